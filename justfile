@@ -39,11 +39,15 @@ deny:
 kernels:
     cargo xtask kernels
 
-# Generate the tables of docs/results and METHOD from the results they name
+# Generate the map of the sources, docs/map.md
+map:
+    cargo xtask map
+
+# Generate the tables of docs/results and docs/method from the results they name
 readme:
     cargo xtask readme
 
-# Generate the drawings of METHOD
+# Generate the drawings of docs/method
 drawings:
     cargo xtask drawings
 

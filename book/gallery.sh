@@ -1,5 +1,5 @@
 #!/bin/sh
-# Renders the pictures of the gallery: one command each, without any tuning.
+# Renders the pictures of the gallery, and of the pages for an architect and an artist: one command each, without any tuning.
 #
 #     book/gallery.sh ../shared/scenes target/release/lightmesh
 #
@@ -30,4 +30,7 @@ picture balloon "$models/balloon/scene.gltf"
 picture chess "$models/chess/chess-board.glb"
 picture house "$models/house/house.glb"
 picture milk_truck "$models/milk_truck/CesiumMilkTruck.glb"
+picture truck_on_ground "$models/milk_truck/CesiumMilkTruck.glb" --ground
+"$program" render "$models/house/house.glb" --sun 55.03,82.92,2026-06-21+07:00,06:00-20:00/15m --size 640x480 -q \
+    --sun-hours "$new/house_hours.png"
 "${PYTHON:-python3}" "$book/shrink.py" "$book/src/gallery" "$new"/*.png

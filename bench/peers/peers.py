@@ -30,7 +30,7 @@ import renderers
 from results import rounded, row
 from scene import Scene
 
-LIBRARY = Path("target/release/examples/libc_interface.so")
+LIBRARY = Path("target/release/libc_interface.so")
 REFERENCE_SEED = 1000
 """Different from the seeds of the measured images, which are their rounds."""
 

@@ -2,13 +2,18 @@
 //!
 //! Kernel files are found by walking the folders. For each, a small generated file names the module and includes it. With
 //! `LIGHTMESH_EMULATE=primary_rays,scan` only these modules are built, which saves time while working on one of them.
+//!
+//! Without a C++ compiler the emulator has no kernels, and its tests are ignored; with `LIGHTMESH_REQUIRE_CXX=1` that is an error.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("cargo::rerun-if-env-changed=LIGHTMESH_EMULATE");
+    println!("cargo::rustc-check-cfg=cfg(no_cxx)");
+    for variable in ["LIGHTMESH_EMULATE", "LIGHTMESH_REQUIRE_CXX", "CXX"] {
+        println!("cargo::rerun-if-env-changed={variable}");
+    }
     // Fibres are implemented for POSIX systems; elsewhere this crate is empty.
     if env::var("CARGO_CFG_TARGET_FAMILY")? != "unix" {
         return Ok(());
@@ -19,6 +24,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Folders are watched as a whole, so that new files are noticed.
     for folder in [&renderer, &here.join("shim"), &here.join("kernels")] {
         println!("cargo::rerun-if-changed={}", folder.display());
+    }
+    if !has_compiler(&out)? {
+        if env::var("LIGHTMESH_REQUIRE_CXX").is_ok_and(|value| value == "1") {
+            return Err(
+                "no C++ compiler works, and LIGHTMESH_REQUIRE_CXX=1 requires one; install one, or set CXX".into()
+            );
+        }
+        println!("cargo::warning=no C++ compiler works: tests on the emulator are ignored; install one, or set CXX");
+        println!("cargo::rustc-cfg=no_cxx");
+        return Ok(());
     }
     let sources = sources(&[&renderer, &here])?;
     let mut modules = modules(&sources)?;
@@ -31,6 +46,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let library = if env::var("CARGO_CFG_TARGET_VENDOR")? == "apple" { "c++" } else { "stdc++" };
     println!("cargo::rustc-link-lib={library}");
     Ok(())
+}
+
+/// Whether there is a compiler at all. One that works and rejects the kernels is an error.
+fn has_compiler(out: &Path) -> Result<bool, Box<dyn Error>> {
+    let mut probe = cc::Build::new();
+    probe.cargo_metadata(false).cargo_warnings(false).cpp(true).file(write(out, "probe.cpp", "int main() {}\n")?);
+    Ok(probe.try_compile("probe").is_ok())
 }
 
 /// Compiles the modules into one library, unless this was already done with the same files.

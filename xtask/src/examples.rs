@@ -1,6 +1,6 @@
 //! `cargo xtask readme` and `cargo xtask drawings`: generated parts of the documents.
 //!
-//! Examples of other crates do the work; they are built only for these commands, so that `cargo xtask` itself stays small.
+//! Programs beside other crates do the work; they are built only for these commands, so that `cargo xtask` itself stays small.
 
 use std::env;
 use std::path::Path;
@@ -8,22 +8,22 @@ use std::process::Command;
 
 use crate::{Outcome, Verdict};
 
-/// Writes the tables of METHOD and of the page of results from the results they name; with `check` only compares them.
+/// Writes the tables of the pages on results and on the thesis' method from the results they name; with `check` only compares them.
 pub(crate) fn readme(root: &Path, check: bool) -> Outcome {
-    run(root, "lightmesh-bench", "readme", &["docs/results/README.md", "METHOD.md"], check)
+    run(root, "lightmesh-bench-examples", "readme", &["docs/results/README.md", "docs/method/thesis.md"], check)
 }
 
-/// Writes the drawings of METHOD; with `check` only compares them.
+/// Writes the drawings of docs/method; with `check` only compares them.
 pub(crate) fn drawings(root: &Path, check: bool) -> Outcome {
-    run(root, "lightmesh-render", "drawings", &["docs/drawings"], check)
+    run(root, "lightmesh-render-examples", "drawings", &["docs/drawings"], check)
 }
 
-/// Runs an example in the repository's root. If it fails, each line on stderr is a problem.
-fn run(root: &Path, package: &str, example: &str, arguments: &[&str], check: bool) -> Outcome {
+/// Runs a program in the repository's root. If it fails, each line on stderr is a problem.
+fn run(root: &Path, package: &str, program: &str, arguments: &[&str], check: bool) -> Outcome {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.current_dir(root);
-    command.args(["run", "--quiet", "--package", package, "--example", example, "--"]).args(arguments);
+    command.args(["run", "--quiet", "--package", package, "--bin", program, "--"]).args(arguments);
     if check {
         command.arg("--check");
     }

@@ -8,6 +8,7 @@ mod corpus;
 mod docs;
 mod examples;
 mod kernels;
+mod map;
 mod pages;
 mod references;
 
@@ -15,20 +16,26 @@ use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 
+use kernels::Task;
+
 const USAGE: &str = "\
 usage: cargo xtask check-docs          checks that every file that the documents name exists
        cargo xtask circles             checks that no modules of the renderer import each other in a circle
-       cargo xtask kernels [--check]   writes the layout header, the kernels' PTX and docs/kernels.md
-       cargo xtask readme [--check]    writes the tables of docs/results and METHOD from the results they name
-       cargo xtask drawings [--check]  writes the drawings of METHOD to docs/drawings
+       cargo xtask kernels [--check [--recompile]]
+                                       writes the layout header, the kernels' PTX and docs/kernels.md
+       cargo xtask map [--check]       writes docs/map.md: each source file with the first sentence of its header
+       cargo xtask readme [--check]    writes the tables of docs/results and docs/method from the results they name
+       cargo xtask drawings [--check]  writes the drawings of docs/method to docs/drawings
        cargo xtask fuzz-corpus [DIR]   fills fuzz/corpus with the seeds, the scenes here and the models in DIR
 
-With --check nothing is written: the command fails if a file is out of date.";
+With --check nothing is written: the command fails if a file is out of date. Kernels are checked by digests of their sources; with
+--recompile they are also compiled again and compared.";
 
 /// The result of a check; an error if it could not run.
 type Outcome = Result<Verdict, Box<dyn Error>>;
 
 /// What was found.
+#[derive(Debug)]
 enum Verdict {
     /// All is well; how much was checked.
     Passed(String),
@@ -52,8 +59,12 @@ fn main() -> ExitCode {
     let verdict = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["check-docs"] => docs::check(root),
         ["circles"] => circles::check(root),
-        ["kernels"] => kernels::run(root, false),
-        ["kernels", "--check"] => kernels::run(root, true),
+        ["kernels"] => kernels::run(root, Task::Write),
+        ["kernels", "--check"] => kernels::run(root, Task::Check),
+        ["kernels", "--check", "--recompile"] => kernels::run(root, Task::Recompile),
+        ["kernels", kernels::ONE, module] => kernels::print(root, module).map(Verdict::Passed),
+        ["map"] => map::run(root, false),
+        ["map", "--check"] => map::run(root, true),
         ["readme"] => examples::readme(root, false),
         ["readme", "--check"] => examples::readme(root, true),
         ["drawings"] => examples::drawings(root, false),

@@ -1,6 +1,6 @@
 //! Regenerates the tables in documents from results, or with `--check` only compares them. See [`lightmesh_bench::readme`].
 //!
-//! `cargo run -p lightmesh-bench --example readme -- docs/results/README.md METHOD.md [--check]`, or `cargo xtask readme [--check]`.
+//! `cargo run -p lightmesh-bench-examples --bin readme -- docs/results/README.md docs/method/thesis.md [--check]`, or `cargo xtask readme [--check]`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
 
 use std::error::Error;

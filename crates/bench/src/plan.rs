@@ -75,13 +75,13 @@ impl Suite {
                 "seconds of each stage by acceleration structure, kind of short tests and radius, on any scene"
             }
             Suite::Antialiasing => {
-                "what several samples of a pixel cost and gain, against a converged image, on any scene"
+                "time and errors of several samples of a pixel, against a converged image, on any scene"
             }
             Suite::Flight => {
-                "flicker of a film with gathered light and with soft shadows, and what it gains by keeping light, on any scene"
+                "flicker of a film with gathered light and soft shadows, and time that kept light saves, on any scene"
             }
-            Suite::Light => "what cut-outs, mirrors, gathered light and a thousand lamps cost, on any scene",
-            Suite::Film => "what films gain by keeping what frames have in common, on any scene",
+            Suite::Light => "the cost of cut-outs, mirrors, gathered light and a thousand lamps, on any scene",
+            Suite::Film => "time that films save by keeping data from frame to frame, on any scene",
         }
     }
 }

@@ -7,7 +7,7 @@ use lightmesh_bench::readme;
 #[test]
 fn tables_of_documents_are_what_their_results_say() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    for document in ["docs/results/README.md", "METHOD.md"] {
+    for document in ["docs/results/README.md", "docs/method/thesis.md"] {
         let path = root.join(document);
         let text = std::fs::read_to_string(&path).unwrap();
         let tables =

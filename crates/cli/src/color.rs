@@ -19,7 +19,7 @@ const FLAG: &str = "--color";
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 #[repr(u8)]
 pub(crate) enum When {
-    /// On a terminal, unless NO_COLOR or CLICOLOR=0 is set; everywhere if CLICOLOR_FORCE is
+    /// On a terminal, unless NO_COLOR, CLICOLOR or CLICOLOR_FORCE decides
     #[default]
     Auto,
     /// Everywhere

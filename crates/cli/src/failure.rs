@@ -84,7 +84,7 @@ pub(crate) enum Failure {
     #[error("a scene on standard input needs its format; add --scene-format {}", scene_formats())]
     NoSceneFormat,
     /// Standard input is a terminal.
-    #[error("standard input is a terminal, which has no scene; redirect a file or a pipe to it, or name a file")]
+    #[error("standard input is a terminal, not a scene; redirect a file or a pipe to it, or name a file")]
     NoScene,
     /// There is no manual page of this name.
     #[error("unknown subcommand `{name}`; available: {}", known.join(", "))]

@@ -34,7 +34,7 @@ pub enum FlagValue {
     Texts(Vec<String>),
 }
 
-/// Why there is no such request.
+/// Invalid option.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequestError {
@@ -93,7 +93,7 @@ struct StorageFlags {
 /// How a scene is read: by `--scene-format`, `--smooth`, `--instances`, `--animation`, `--allow-outside`, `--strict` and `--memory-limit`.
 ///
 /// # Errors
-/// [`RequestError`] for flags that there are not, or values that they do not take.
+/// [`RequestError`] for an unknown flag or an invalid value.
 pub fn load_options(flags: &[Flag]) -> Result<LoadOptions, RequestError> {
     let OpenFlags { reading, form } = parse(flags)?;
     let smooth = form.smooth.unwrap_or(Smooth::default()).0;
@@ -112,7 +112,7 @@ impl ImageRequest {
     /// `--layers`. `format` is that of the file the scene was read from: some have their own idea of what is up.
     ///
     /// # Errors
-    /// [`RequestError`] for flags that there are not, or values that they do not take.
+    /// [`RequestError`] for an unknown flag or an invalid value.
     pub fn new(flags: &[Flag], format: Option<SceneFormat>) -> Result<ImageRequest, RequestError> {
         let ImageFlags { image, exposure, layers, memory_limit } = parse(flags)?;
         let memory_limit = memory_limit.map(|limit| limit.0);
@@ -144,7 +144,7 @@ impl ImageRequest {
     /// Changes a scene as the flags say, and adds what it lacks: camera, lights, a ground.
     ///
     /// # Errors
-    /// [`ChoiceError`] if there is no such camera, or surroundings cannot be had.
+    /// [`ChoiceError`] for an unknown camera or invalid surroundings.
     pub fn stage(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Staged, ChoiceError> {
         let behind = self.choices.apply(scene, observer)?;
         let exposure = exposure(scene, self.exposure);
@@ -184,7 +184,7 @@ impl StorageRequest {
     /// By `--format`, `--transfer`, `--exposure`, `--view`, `--bit-depth`, `--dither` and those of exr files.
     ///
     /// # Errors
-    /// [`RequestError`] for flags that there are not, or values that they do not take.
+    /// [`RequestError`] for an unknown flag or an invalid value.
     pub fn new(flags: &[Flag]) -> Result<StorageRequest, RequestError> {
         let StorageFlags { storage, exposure } = parse(flags)?;
         Ok(StorageRequest { options: plan::save_options(&storage), exposure: exposure.exposure })
@@ -285,7 +285,7 @@ mod tests {
         assert_eq!(image(&[flag("qualty", "draft")]).unwrap_err(), "there is no setting qualty; did you mean quality?");
         assert_eq!(image(&[flag("turntable", "8")]).unwrap_err(), "there is no setting turntable");
         let crop = image(&[flag("crop", "60,0,10,10"), flag("size", "64x48")]).unwrap_err();
-        assert!(crop.starts_with("--crop 60,0,10,10 is not a part of an image of 64x48 pixels"), "{crop}");
+        assert!(crop.starts_with("--crop 60,0,10,10 exceeds the image of 64x48 pixels"), "{crop}");
     }
 
     #[test]

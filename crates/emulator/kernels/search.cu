@@ -1,5 +1,6 @@
-// Searches by region, one warp each: tests accel/search.cuh and accel/region.cuh. Instances are in modules with CUT_OUTS alone.
+// Searches by region, one warp each: tests accel/search.cuh and accel/region.cuh, with all structures.
 #define CUT_OUTS 1
+#define WALKS_grid 1
 #include "cuda/prelude.cuh"
 
 #include "accel/search.cuh"

@@ -55,6 +55,7 @@ unsafe impl Sync for Constant {}
 // SAFETY: the data it points to outlives the launch and is not changed during it.
 unsafe impl Sync for Launch {}
 
+#[cfg(not(no_cxx))]
 unsafe extern "C" {
     fn lightmesh_emulator_kernels() -> *const Kernel;
     fn lightmesh_emulator_constants() -> *const Constant;
@@ -62,6 +63,37 @@ unsafe extern "C" {
     fn lightmesh_emulator_drop(machine: *mut c_void);
     fn lightmesh_emulator_prepare(machine: *mut c_void, launch: *const Launch);
     fn lightmesh_emulator_run(machine: *mut c_void, launch: *const Launch, block: u32) -> *const c_char;
+}
+
+#[cfg(no_cxx)]
+use none::*;
+
+/// There was no C++ compiler: no kernels, no constants, and no machine that runs them.
+#[cfg(no_cxx)]
+mod none {
+    use std::ptr;
+
+    use super::{Constant, Kernel, Launch, c_char, c_void};
+
+    pub(super) unsafe fn lightmesh_emulator_kernels() -> *const Kernel {
+        ptr::null()
+    }
+
+    pub(super) unsafe fn lightmesh_emulator_constants() -> *const Constant {
+        ptr::null()
+    }
+
+    pub(super) unsafe fn lightmesh_emulator_machine() -> *mut c_void {
+        ptr::null_mut()
+    }
+
+    pub(super) unsafe fn lightmesh_emulator_drop(_: *mut c_void) {}
+
+    pub(super) unsafe fn lightmesh_emulator_prepare(_: *mut c_void, _: *const Launch) {}
+
+    pub(super) unsafe fn lightmesh_emulator_run(_: *mut c_void, _: *const Launch, _: u32) -> *const c_char {
+        ptr::null()
+    }
 }
 
 type Names = (&'static str, &'static str);

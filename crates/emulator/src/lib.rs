@@ -17,7 +17,8 @@
 //!
 //! A kernel file is any `.cu` under `crates/render/src`; `build.rs` finds it, and compiles it with `shim/shim.h` in place of CUDA. The
 //! module is named after the folder of a `kernel.cu`, and after the file otherwise. `LIGHTMESH_EMULATE=primary_rays,scan cargo test -p
-//! lightmesh-emulator` builds only these modules; then launches of others fail. A CUDA name that the shim lacks does not compile: add
+//! lightmesh-emulator` builds only these modules; then launches of others fail. If no C++ compiler works, all do, and tests are ignored:
+//! `LIGHTMESH_REQUIRE_CXX=1` makes that an error. A CUDA name that the shim lacks does not compile: add
 //! it to `shim/numbers.h`, `shim/atomics.h` or `shim/collectives.h`.
 //!
 //! # Detected errors
@@ -65,6 +66,7 @@ pub struct Emulator {
     ledger: Arc<Ledger>,
     /// Work is done when it is queued, one operation at a time.
     queue: Mutex<Queue>,
+    brute_force: bool,
 }
 
 #[derive(Default)]
@@ -104,8 +106,13 @@ impl Emulator {
         Emulator::with_ledger(Ledger::new(Some(bytes)))
     }
 
+    /// The same without the kernels that no device has: those that test every triangle.
+    pub fn without_brute_force(self) -> Emulator {
+        Emulator { brute_force: false, ..self }
+    }
+
     fn with_ledger(ledger: Ledger) -> Emulator {
-        Emulator { id: new_id(), ledger: Arc::new(ledger), queue: Mutex::default() }
+        Emulator { id: new_id(), ledger: Arc::new(ledger), queue: Mutex::default(), brute_force: true }
     }
 
     /// Makes the `number`-th allocation from now on fail, where 1 is the next; those after it succeed.
@@ -143,6 +150,10 @@ impl Runtime for Emulator {
 
     fn id(&self) -> u64 {
         self.id
+    }
+
+    fn has_brute_force(&self) -> bool {
+        self.brute_force
     }
 
     fn free_memory(&self) -> Option<u64> {

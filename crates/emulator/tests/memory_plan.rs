@@ -50,6 +50,7 @@ fn bits(frame: &Frame) -> (Vec<[u32; 3]>, Vec<u32>) {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_picture_in_bands_is_the_same_picture() {
     same_in_bands(settings);
 }
@@ -72,6 +73,7 @@ impl Observer for AfterBands {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn what_is_finished_when_an_image_is_stopped_is_that_of_the_whole_image() {
     let settings = || settings().with_lookup(Lookup::Lists).with_samples(9).with_aa(4);
     let (whole, ..) = render(&scene(), Emulator::new(), &settings());
@@ -97,16 +99,19 @@ fn what_is_finished_when_an_image_is_stopped_is_that_of_the_whole_image() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn pixels_see_neighbors_in_other_bands() {
     same_in_bands(|| settings().with_lookup(Lookup::Adaptive).with_samples(9));
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn samples_are_counted_by_what_they_see_in_bands_too() {
     same_in_bands(|| settings().with_lookup(Lookup::Lists).with_samples(4).with_aa(5).with_bounces(1));
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn many_lights_need_no_more_memory_and_no_bands() {
     let settings = || settings().with_lookup(Lookup::Lists).with_samples(9).with_bounces(1);
     let lights = |count: usize| {
@@ -154,6 +159,7 @@ fn same_bands_of(scene: &Scene, settings: impl Fn() -> Settings) {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn too_little_memory_is_an_error_that_names_the_buffer() {
     for bytes in [1, 1000, 5000] {
         let (frame, ..) = render(&scene(), Emulator::with_memory(bytes), &settings());
@@ -176,6 +182,7 @@ fn chosen(allocations: u64) -> impl Iterator<Item = u64> {
 
 /// Whichever allocation fails: the image is rendered in smaller bands, or the error names the buffer.
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn any_allocation_may_fail() {
     let scene = scene();
     let (whole, traffic, _) = render(&scene, Emulator::new(), &settings());
@@ -199,6 +206,7 @@ fn any_allocation_may_fail() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_second_picture_of_a_scene_uploads_next_to_nothing() {
     let scene = Scene::open("builtin:gazebo").unwrap();
     let prepared = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
@@ -215,6 +223,7 @@ fn a_second_picture_of_a_scene_uploads_next_to_nothing() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn geometry_is_uploaded_once_and_freed_when_it_is_gone() {
     let emulator = Arc::new(Emulator::new());
     let cuda = Cuda::new(Arc::clone(&emulator));
@@ -272,6 +281,7 @@ impl Observer for Notes {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_cache_gives_way_where_an_allocation_fails() {
     let settings = settings();
     let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
@@ -287,6 +297,7 @@ fn a_cache_gives_way_where_an_allocation_fails() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_cache_gives_way_to_a_limit() {
     let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
     let whole = render_on(&Cuda::new(Arc::new(Emulator::new())), &scene, &settings(), &Unobserved).unwrap();
@@ -300,6 +311,7 @@ fn a_cache_gives_way_to_a_limit() {
 
 /// A film of which everything cannot be kept: the bricks that were used last are.
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_cache_under_a_limit_keeps_what_was_used_last() {
     let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
     let film = |limit: Option<u64>| {
@@ -331,6 +343,7 @@ fn a_cache_under_a_limit_keeps_what_was_used_last() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_cache_grows_and_forgets_nothing() {
     let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
     let cuda = Cuda::new(Arc::new(Emulator::new()));
@@ -350,6 +363,7 @@ fn a_cache_grows_and_forgets_nothing() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn every_stage_ends_at_its_total_in_bands_too() {
     let scene = scene();
     let prepared = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();

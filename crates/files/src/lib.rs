@@ -1,5 +1,5 @@
 //! The border between the program and files: output files that are written completely or not at all, input files that are
-//! [read](read_inside) only where they may lie, and text of either made [visible].
+//! [read](read_inside) only where they may lie, and text of either made safe to show.
 //!
 //! 1. An [`Output`] for a file is a temporary file next to its target; links are followed. What is no regular file (a pipe,
 //!    `/dev/stdout`, a device) is never replaced: it is written through.

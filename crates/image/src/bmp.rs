@@ -2,6 +2,8 @@
 //!
 //! Layout (little-endian): `BITMAPFILEHEADER` of 14 bytes, `BITMAPINFOHEADER` of 40 bytes, then the rows from bottom to
 //! top, each of blue, green, red triples and padded to a multiple of 4 bytes.
+//!
+//! The writer of the crate `image` leaves the resolution 0, so that its files differ in 8 bytes, and takes the whole picture at once.
 
 use std::io::{Cursor, Write};
 

@@ -149,8 +149,8 @@ words!(
 
 words!(
     ExrSamples, "kind of numbers",
-    Float "float" "32 bits: exactly what was rendered",
-    Half "half" "16 bits: half the size, 3 digits; depth, positions and counts stay 32 bits"
+    Float "float" "32 bits, exactly as rendered",
+    Half "half" "16 bits: half the size, 3 digits; depth, positions, counts and mattes stay float"
 );
 
 /// Lossless compression of exr files.
@@ -176,7 +176,7 @@ words!(
     Zips "zips" "Deflate by row, for programs that read few rows at a time",
     Piz "piz" "Wavelets, for noisy images",
     Rle "rle" "Run lengths: fast",
-    None "none" "Nothing is compressed"
+    None "none" "No compression"
 );
 
 /// The parts of an exr file with layers.

@@ -187,8 +187,6 @@ records! {
         cells: In<i32>,
         /// The triangles of all cells, one cell after another.
         triangles: In<Triangle>,
-        /// Where they are cut out.
-        coverage: Coverage,
         /// For each cell of the outer grid, the distance to the nearest non-empty one, in cells; at most 255.
         distances: In<u8>,
         /// Lowest corner.

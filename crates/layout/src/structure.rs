@@ -35,21 +35,20 @@ structures! { $
     Bvh = bvh;
     /// A regular grid.
     Grid = grid;
-    /// A test of every triangle, always.
+    /// A test of every triangle, always: the reference of tests, whose kernels exist in the emulator alone.
     BruteForce = brute_force;
-    /// A wide BVH over instances: only in modules for scenes in which triangles are cut out, so that others are not compiled for it.
+    /// A wide BVH over instances: in modules with INSTANCES alone.
     InstancedBvh = instanced;
 }
 
 /// Prints the macro that expands to something for each structure.
 pub(crate) fn print(text: &mut String) {
     let each: Vec<String> = FIELDS.iter().map(|field| format!("DO({field}, __VA_ARGS__)")).collect();
-    let [all, others] = [FIELDS.len(), Structure::InstancedBvh as usize].map(|count| each[..count].join(" "));
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "\n// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`. Instances are in modules with CUT_OUTS alone.\n\
-         #if CUT_OUTS\n#define PER_STRUCTURE(DO, ...) {all}\n#else\n#define PER_STRUCTURE(DO, ...) {others}\n#endif"
+        "\n// DO(structure, …) for each acceleration structure, by the name of its field in `Scene`.\n#define PER_STRUCTURE(DO, ...) {}",
+        each.join(" ")
     );
 }
 
@@ -68,8 +67,7 @@ mod tests {
     fn the_header_has_them_in_one_line() {
         let mut text = String::new();
         print(&mut text);
-        let others = "DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__)";
-        assert!(text.ends_with(&format!("{others}\n#endif\n")), "{text}");
-        assert!(text.contains(&format!("{others} DO(instanced, __VA_ARGS__)\n#else")), "{text}");
+        let all = "DO(bvh, __VA_ARGS__) DO(grid, __VA_ARGS__) DO(brute_force, __VA_ARGS__) DO(instanced, __VA_ARGS__)";
+        assert!(text.ends_with(&format!("#define PER_STRUCTURE(DO, ...) {all}\n")), "{text}");
     }
 }

@@ -1,6 +1,6 @@
 //! Baking: soft light and shadows become vertex colours, for viewers without shadows.
 //!
-//! `cargo run --release -p lightmesh --example bake [SCENE [MODEL]]`
+//! `cargo run --release -p lightmesh-examples --bin bake [SCENE [MODEL]]`
 #![allow(clippy::print_stdout, reason = "an example says what it wrote")]
 
 use std::error::Error;

@@ -1,6 +1,6 @@
 //! A C interface: images of a scene that stays open in the caller's process. `bench/peers` times them there, through Python's ctypes.
 //!
-//! `cargo build --release -p lightmesh --example c_interface` makes the shared library `target/release/examples/libc_interface.so`.
+//! `cargo build --release -p lightmesh-examples --lib` makes the shared library `target/release/libc_interface.so`.
 
 use std::error::Error;
 use std::ffi::{CStr, c_char};

@@ -1,7 +1,7 @@
 //! The first image: renders a scene file, or a built-in scene, to an image file. A scene without camera or lights gets default
 //! ones.
 //!
-//! `cargo run --release -p lightmesh --example first_picture [SCENE [IMAGE]]`
+//! `cargo run --release -p lightmesh-examples --bin first_picture [SCENE [IMAGE]]`
 #![allow(clippy::print_stdout, reason = "an example says what it did")]
 
 use std::error::Error;

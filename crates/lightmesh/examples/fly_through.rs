@@ -1,6 +1,6 @@
 //! A flight through a scene: what light points see is cached from image to image, and only new ones are tested.
 //!
-//! `cargo run --release -p lightmesh --example fly_through [SCENE [STEPS [SIZE [STEP]]]]`: the built-in Childpark, 30 images of 512 by
+//! `cargo run --release -p lightmesh-examples --bin fly_through [SCENE [STEPS [SIZE [STEP]]]]`: the built-in Childpark, 30 images of 512 by
 //! 512 pixels, a light-mesh step of 1. Every tenth image is rendered again without the cache, and must be byte-identical.
 #![allow(clippy::print_stdout, reason = "an example says what it did")]
 

@@ -1,6 +1,6 @@
 //! Layers: what each pixel sees, as one OpenEXR file for compositing, and depth and the visibility of each light as images.
 //!
-//! `cargo run --release -p lightmesh --example layers [SCENE [FOLDER]]`
+//! `cargo run --release -p lightmesh-examples --bin layers [SCENE [FOLDER]]`
 #![allow(clippy::print_stdout, reason = "an example says what it wrote")]
 
 use std::error::Error;

@@ -1,6 +1,6 @@
 //! A camera that moves around a scene with many lights. The scene is prepared once; each image costs only its own render time.
 //!
-//! `cargo run --release -p lightmesh --example moving_camera [LIGHTS [IMAGES [FOLDER]]]`, by default 24 lights and 6 images.
+//! `cargo run --release -p lightmesh-examples --bin moving_camera [LIGHTS [IMAGES [FOLDER]]]`, by default 24 lights and 6 images.
 #![allow(clippy::print_stdout, reason = "an example says what it wrote")]
 
 use std::error::Error;

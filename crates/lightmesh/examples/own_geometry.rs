@@ -1,6 +1,6 @@
 //! Custom geometry: arrays of vertices, normals, colours and triangles become a scene. Here they are a hill with boxes on it.
 //!
-//! `cargo run --release -p lightmesh --example own_geometry [IMAGE]`
+//! `cargo run --release -p lightmesh-examples --bin own_geometry [IMAGE]`
 #![allow(clippy::print_stdout, reason = "an example says what it wrote")]
 
 use std::error::Error;

@@ -1,6 +1,6 @@
 //! Progress and cancellation: an observer reports progress and stops the work after a deadline.
 //!
-//! `cargo run --release -p lightmesh --example progress [SECONDS [IMAGE]]`, 3 seconds by default.
+//! `cargo run --release -p lightmesh-examples --bin progress [SECONDS [IMAGE]]`, 3 seconds by default.
 #![allow(clippy::print_stdout, reason = "an example says what it does")]
 
 use std::error::Error;

@@ -1,6 +1,6 @@
 //! A sun study: one scene at several hours of the day. The scene is prepared once; moving the sun rebuilds nothing.
 //!
-//! `cargo run --release -p lightmesh --example sun_study [SCENE [FOLDER [HOURS]]]`, where HOURS is the number of images (5).
+//! `cargo run --release -p lightmesh-examples --bin sun_study [SCENE [FOLDER [HOURS]]]`, where HOURS is the number of images (5).
 #![allow(clippy::print_stdout, reason = "an example reports what it wrote")]
 
 use std::error::Error;

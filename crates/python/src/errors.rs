@@ -130,6 +130,7 @@ impl IntoException for RenderError {
                 class::GeometryError::new_err(message)
             }
             RenderError::Setting { .. }
+            | RenderError::Structure { .. }
             | RenderError::Lattice(_)
             | RenderError::Template(_)
             | RenderError::Grid(_)

@@ -1,7 +1,7 @@
 //! Checks a CUDA device below the renderer: memory is read back as it was written, kernels run, clocks agree; and measures the speed
 //! of all that.
 //!
-//! `cargo run --release -p lightmesh-render --example driver_check [cuda:N]`
+//! `cargo run --release -p lightmesh-render-examples --bin driver_check [cuda:N]`
 #![allow(clippy::print_stdout, reason = "an example says what it found")]
 
 use std::error::Error;

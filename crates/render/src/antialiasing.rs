@@ -42,10 +42,12 @@ pub struct Antialiasing {
     pub keeps: bool,
     /// The relative difference to a neighbour from which a pixel's samples are shaded one by one.
     pub contrast: f32,
-    pub(crate) seed: u64,
-    pub(crate) quantiles: [f32; FILTER_PLACES as usize],
+    /// Selects the random patterns.
+    pub seed: u64,
+    /// Places of samples, by the share of the filter before them.
+    pub quantiles: [f32; FILTER_PLACES as usize],
     /// The width in pixels of a square over which evenly spread samples vary as much as over the filter.
-    pub(crate) breadth: f32,
+    pub breadth: f32,
 }
 
 impl Antialiasing {
@@ -76,7 +78,7 @@ impl Antialiasing {
 
     /// Where sample number `sample` of pixel number `number` lies, in pixels from its centre: to the right and down.
     #[inline(always)]
-    pub(crate) fn aside(&self, number: u32, sample: u32) -> [f32; 2] {
+    pub fn aside(&self, number: u32, sample: u32) -> [f32; 2] {
         self.within(&self.pattern(number), sample)
     }
 
@@ -88,12 +90,12 @@ impl Antialiasing {
 
     /// The ray through sample number `sample` of a pixel of a view.
     #[inline(always)]
-    pub(crate) fn ray(&self, view: &View, pixel: u32, sample: u32) -> Ray {
+    pub fn ray(&self, view: &View, pixel: u32, sample: u32) -> Ray {
         view.ray_beside(pixel, self.aside(view.window().number(pixel), sample))
     }
 
     /// The rays through samples `numbers` of the pixels `pixels` of a view, pixel by pixel: the same bits as [`Antialiasing::ray`].
-    pub(crate) fn rays(&self, level: Level, view: &View, pixels: Range<u32>, numbers: Range<u32>, rays: &mut Vec<Ray>) {
+    pub fn rays(&self, level: Level, view: &View, pixels: Range<u32>, numbers: Range<u32>, rays: &mut Vec<Ray>) {
         rays.clear();
         dispatch!(level, simd => self.add_rays(simd, view, pixels, numbers, rays));
     }
@@ -143,14 +145,14 @@ impl Antialiasing {
 }
 
 /// The [`quantiles`] of a filter. They are computed once, which takes about as long as a small image on a GPU.
-fn table(filter: Filter) -> &'static [f32; FILTER_PLACES as usize] {
+pub fn table(filter: Filter) -> &'static [f32; FILTER_PLACES as usize] {
     static TABLES: [OnceLock<[f32; FILTER_PLACES as usize]>; 3] = [const { OnceLock::new() }; 3];
     let number = Filter::ALL.iter().position(|&other| other == filter).unwrap_or_default();
     TABLES[number].get_or_init(|| quantiles(filter))
 }
 
 /// The offsets below which each 1/63 of a filter lies.
-fn quantiles(filter: Filter) -> [f32; FILTER_PLACES as usize] {
+pub fn quantiles(filter: Filter) -> [f32; FILTER_PLACES as usize] {
     let radius = 0.5 * filter.width();
     let middle = |part: usize| radius * ((part as f64 + 0.5) / (0.5 * PARTS as f64) - 1.0);
     let values: Vec<f64> = (0..PARTS).map(|part| weight(filter, middle(part))).collect();
@@ -180,7 +182,7 @@ fn breadth(quantiles: &[f32; FILTER_PLACES as usize]) -> f32 {
 }
 
 /// A filter at `offset` pixels from the centre, within its width.
-fn weight(filter: Filter, offset: f64) -> f64 {
+pub fn weight(filter: Filter, offset: f64) -> f64 {
     match filter {
         Filter::Box => 1.0,
         // Three standard deviations to either side.
@@ -188,87 +190,6 @@ fn weight(filter: Filter, offset: f64) -> f64 {
         Filter::BlackmanHarris => {
             let turn = TAU * (offset / filter.width() + 0.5);
             0.35875 - 0.48829 * turn.cos() + 0.14128 * (2.0 * turn).cos() - 0.01168 * (3.0 * turn).cos()
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::Vec3;
-    use lightmesh_scene::{Camera, Projection};
-
-    use super::*;
-    use crate::view::Window;
-
-    const FILTERS: [Filter; 3] = [Filter::Box, Filter::Gauss, Filter::BlackmanHarris];
-
-    #[test]
-    fn samples_have_the_density_of_the_filter() {
-        for filter in FILTERS {
-            let offsets = quantiles(filter);
-            let radius = 0.5 * filter.width();
-            assert_eq!((offsets[0], offsets[63]), (-radius as f32, radius as f32), "{filter:?}");
-            let area = |from: f64, to: f64| {
-                let part = (to - from) / 1000.0;
-                (0..1000).map(|i| part * weight(filter, from + (f64::from(i) + 0.5) * part)).sum::<f64>()
-            };
-            let all = area(-radius, radius);
-            for step in offsets.windows(2) {
-                let share = area(f64::from(step[0]), f64::from(step[1])) / all;
-                assert!((share - 1.0 / 63.0).abs() < 1e-4, "{filter:?}: {share}");
-            }
-        }
-    }
-
-    #[test]
-    fn every_filter_has_a_table_of_its_own() {
-        for &filter in Filter::ALL {
-            assert_eq!(*table(filter), quantiles(filter), "{filter}");
-        }
-    }
-
-    #[test]
-    fn a_filter_is_as_broad_as_its_deviation() {
-        let breadths = FILTERS.map(|filter| Antialiasing::new(8, filter, 0, 64).breadth);
-        // The square root of 12 times the standard deviation: 0.375 for the Gaussian, 0.4155 for the other. Within the last steps of the
-        // table samples are spread evenly, which is a little more.
-        for (found, expected) in breadths.into_iter().zip([1.0, 1.299, 1.439]) {
-            assert!((0.999..1.05).contains(&(found / expected)), "{breadths:?}");
-        }
-    }
-
-    #[test]
-    fn many_rays_are_the_same_as_single_ones() {
-        let camera = Camera::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::ZERO, Vec3::Y, 40.0).unwrap();
-        for projection in [camera.projection, Projection::Orthographic { height: 3.0 }] {
-            let view = View::new(&camera.clone().with_projection(projection), [7, 5]);
-            let view = view.with_window(Window { size: [4, 3], first: [2, 1], whole: [7, 5] });
-            for (filter, numbers) in [(Filter::BlackmanHarris, 0..8), (Filter::Box, 0..3), (Filter::Gauss, 8..27)] {
-                let samples = Antialiasing::new(32, filter, 5, 64);
-                let mut rays = Vec::new();
-                samples.rays(Level::new(), &view, 1..12, numbers.clone(), &mut rays);
-                let single = (1..12).flat_map(|pixel| numbers.clone().map(move |sample| (pixel, sample)));
-                let single: Vec<Ray> = single.map(|(pixel, sample)| samples.ray(&view, pixel, sample)).collect();
-                let bits = |rays: &[Ray]| -> Vec<_> {
-                    rays.iter().map(|ray| [ray.origin, ray.direction].map(|v| v.to_array().map(f32::to_bits))).collect()
-                };
-                assert_eq!(bits(&rays), bits(&single), "{filter:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn any_pixel_has_its_own_samples_around_its_centre() {
-        for filter in FILTERS {
-            let samples = Antialiasing::new(64, filter, 3, 64);
-            let of = |pixel: u32| (0..64).map(|sample| samples.aside(pixel, sample)).collect::<Vec<_>>();
-            assert_ne!(of(1), of(2));
-            for axis in 0..2 {
-                let mean = of(7).iter().map(|aside| aside[axis]).sum::<f32>() / 64.0;
-                assert!(mean.abs() < 0.01, "{filter:?}: {mean}");
-            }
-            let other = Antialiasing::new(64, filter, 4, 64);
-            assert_ne!(samples.aside(1, 0), other.aside(1, 0), "another seed");
         }
     }
 }

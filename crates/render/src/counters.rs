@@ -20,12 +20,14 @@ macro_rules! tally {
             }
 
             /// Returns to an earlier state: what was counted since belongs to work that is repeated.
-            pub(crate) fn restore(&self, counters: &Counters) {
+            #[doc(hidden)]
+            pub fn restore(&self, counters: &Counters) {
                 $(self.$name.store(counters.$name, Ordering::Relaxed);)*
             }
 
             /// Adds the counts of a device.
-            pub(crate) fn add_all(&self, counters: &Counters) {
+            #[doc(hidden)]
+            pub fn add_all(&self, counters: &Counters) {
                 $(Tally::add(&self.$name, counters.$name);)*
             }
         }
@@ -44,7 +46,7 @@ macro_rules! tally {
 
         impl Counts {
             /// The report on the counts.
-            pub(crate) fn new(pixels: u64, template: u64, counters: &Counters) -> Counts {
+            pub fn new(pixels: u64, template: u64, counters: &Counters) -> Counts {
                 let points = (counters.surface_points as f64).max(1.0);
                 Counts { pixels, template, non_finite_pixels: 0, $($report: tally!(@report $kind, counters.$name, points),)* }
             }
@@ -77,30 +79,5 @@ impl Tally {
     /// Reads a count.
     pub fn get(count: &AtomicU64) -> u64 {
         count.load(Ordering::Relaxed)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_done_again_is_not_counted_twice() {
-        let tally = Tally::default();
-        Tally::add(&tally.rays, 3);
-        let before = tally.snapshot();
-        Tally::add(&tally.rays, 4);
-        tally.restore(&before);
-        tally.add_all(&Counters { rays: 5, overruns: 1, ..before });
-        assert_eq!((Tally::get(&tally.rays), Tally::get(&tally.overruns)), (8, 1));
-    }
-
-    #[test]
-    fn means_are_over_the_surface_points() {
-        let counters = Counters { surface_points: 4, used: 10, hits: 3, ..Tally::default().snapshot() };
-        let counts = Counts::new(16, 88, &counters);
-        assert_eq!((counts.pixels, counts.template, counts.hits, counts.used_mean), (16, 88, 3, 2.5));
-        assert_eq!(counts.values().len(), Counters::NAMES.len() + 3);
-        assert_eq!(Counts::new(1, 0, &Tally::default().snapshot()).used_mean, 0.0);
     }
 }

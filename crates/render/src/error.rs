@@ -111,6 +111,16 @@ pub enum RenderError {
         /// Why not, and what to do.
         reason: String,
     },
+    /// The device does not have the kernels of an acceleration structure.
+    #[error(
+        "{device} has no kernels for the acceleration structure {structure}: choose bvh or grid, or the device cpu"
+    )]
+    Structure {
+        /// The structure.
+        structure: String,
+        /// The vendor's name for the device.
+        device: String,
+    },
     /// A device does not have enough memory, however few rows are rendered at once.
     #[error(
         "{device} cannot hold {buffer}: {needed} bytes are needed, {} are free; choose a smaller image, a larger step or a smaller radius, or the device cpu",
@@ -147,6 +157,7 @@ impl RenderError {
             RenderError::Template(_) => vec![Setting::Radius],
             RenderError::Grid(_) | RenderError::GridFile(_) => vec![Setting::Acceleration],
             RenderError::Setting { setting, .. } => vec![*setting],
+            RenderError::Structure { .. } => vec![Setting::Acceleration, Setting::Device],
             RenderError::Threads { .. } => vec![Setting::Threads],
             RenderError::Memory { .. } => vec![Setting::MemoryLimit, Setting::Size, Setting::Step, Setting::Radius],
             RenderError::BuildMemory { .. } | RenderError::TextureMemory { .. } => vec![Setting::MemoryLimit],

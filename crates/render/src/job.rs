@@ -48,7 +48,9 @@ pub struct Job<'a> {
     pub shadow_tests: ShadowTests,
     /// The counts so far.
     pub tally: Tally,
-    pub(crate) work: Work,
+    /// How much is done.
+    #[doc(hidden)]
+    pub work: Work,
     seconds: Mutex<Seconds>,
     /// Set when some work was skipped because the observer requested cancellation.
     stopped: AtomicBool,

@@ -22,6 +22,8 @@ mod error;
 mod footprint;
 mod gathered;
 mod gpu;
+#[doc(hidden)]
+pub mod internals;
 mod job;
 pub mod light_mesh;
 mod material_ids;

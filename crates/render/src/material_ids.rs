@@ -6,16 +6,16 @@ use lightmesh_scene::Geometry;
 
 /// Materials by name: those of the same name have one number.
 #[derive(Clone)]
-pub(crate) struct MaterialIds {
+pub struct MaterialIds {
     /// The number of each material.
-    pub(crate) numbers: Vec<u32>,
+    pub numbers: Vec<u32>,
     /// The name of each number.
-    pub(crate) names: Vec<String>,
+    pub names: Vec<String>,
 }
 
 impl MaterialIds {
     /// A material without a name is called after its place.
-    pub(crate) fn new(geometry: &Geometry) -> MaterialIds {
+    pub fn new(geometry: &Geometry) -> MaterialIds {
         let (mut known, mut names) = (HashMap::new(), Vec::new());
         let mut number = |(index, name): (usize, &String)| {
             let name = if name.is_empty() { format!("material {}", index + 1) } else { name.clone() };
@@ -26,19 +26,5 @@ impl MaterialIds {
         };
         let numbers = geometry.materials.iter().map(|material| &material.name).enumerate().map(&mut number).collect();
         MaterialIds { numbers, names }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use lightmesh_scene::Material;
-
-    use super::*;
-
-    #[test]
-    fn materials_of_one_name_have_one_number() {
-        let materials = ["a", "", "b", "a", ""].map(|name| Material::default().named(name)).to_vec();
-        let ids = MaterialIds::new(&Geometry { materials, ..Geometry::default() });
-        assert_eq!((ids.numbers, ids.names.join(",")), (vec![1, 2, 3, 1, 4], "a,material 2,b,material 5".to_owned()));
     }
 }

@@ -1,4 +1,4 @@
-//! Geometry in which things have moved: what of it stays, and boxes around the rest.
+//! Geometry after a motion: which parts stay, and boxes around those that moved.
 
 use std::sync::Arc;
 

@@ -52,31 +52,6 @@ pub struct Plan {
     pub footprint: Footprint,
 }
 
-#[cfg(test)]
-impl Plan {
-    /// An image without anything that was not asked for, with `left` bytes.
-    pub(crate) fn plain(size: [u32; 2], lights: LightGroups, left: Option<u64>) -> Plan {
-        Plan {
-            size,
-            antialiasing: None,
-            bounces: 0,
-            lets_through: false,
-            coverage: false,
-            caught: false,
-            layers: None,
-            compositing: false,
-            gathering: None,
-            lights,
-            most_rows: None,
-            memory_limit: left,
-            left,
-            kept: 0,
-            reserved: 0,
-            footprint: Footprint::default(),
-        }
-    }
-}
-
 impl Plan {
     /// Pixels of the image.
     pub fn pixels(&self) -> u64 {
@@ -106,7 +81,8 @@ impl Plan {
     }
 
     /// Bytes of an image per pixel.
-    pub(crate) fn film_bytes(&self) -> u64 {
+    #[doc(hidden)]
+    pub fn film_bytes(&self) -> u64 {
         12 + 4 * (u64::from(self.coverage) + u64::from(self.caught))
             + self.layers.map_or(0, |lights| 32 + 4 * lights as u64 + self.compositing_bytes(lights as u64))
     }

@@ -24,7 +24,7 @@ use crate::sync::locked;
 use crate::textures::AllLevels;
 
 /// Bytes that a triangle takes at most while a BVH is built, with what is kept of it.
-const BYTES_TO_BUILD: u64 = 400;
+pub const BYTES_TO_BUILD: u64 = 400;
 
 /// Bytes of a triangle and its share of vertices in a copy of a shape, about.
 const BYTES_OF_COPY: u64 = 80;
@@ -237,7 +237,8 @@ impl PreparedGeometry {
 
     /// Hash of all that decides what hides what: triangles in their order, which of them there are, and where they are cut out. The same for
     /// all structures. It is computed at the first call.
-    pub(crate) fn hash(&self) -> u64 {
+    #[doc(hidden)]
+    pub fn hash(&self) -> u64 {
         *self.hash.get_or_init(|| {
             let mut hash = Xxh3::new();
             hash.update(&geometry_hash(self.triangles.stored()).to_le_bytes());
@@ -578,7 +579,7 @@ impl Preparations {
 
 /// Where suns are seen from: a point about the middle of the bounds, and more than the distance from there to any triangle. Both are
 /// multiples of a power of two, so that they rarely change when objects move: the segments to a sun would change with them, by rounding.
-fn middle_and_reach(bounds: &Bounds) -> (Vec3, f32) {
+pub fn middle_and_reach(bounds: &Bounds) -> (Vec3, f32) {
     if bounds.is_empty() {
         return (Vec3::ZERO, 1.0);
     }
@@ -589,48 +590,4 @@ fn middle_and_reach(bounds: &Bounds) -> (Vec3, f32) {
     }
     // No corner is farther than half the diagonal, and half that of a cube of this size.
     ((bounds.center() / size).round() * size, 1.5 * size)
-}
-
-#[cfg(test)]
-mod tests {
-    use lightmesh_scene::Mesh;
-
-    use super::*;
-    use crate::observer::Unobserved;
-
-    #[test]
-    fn suns_are_beyond_all_corners_and_stay_while_bounds_change_little() {
-        let bounds = |min: [f32; 3], max: [f32; 3]| Bounds { min: min.into(), max: max.into() };
-        for (min, max) in
-            [([-1.0; 3], [1.0; 3]), ([100.0, 0.0, -3.0], [101.0, 1e-3, 7.0]), ([1e6, -4.0, 5.0], [1e6 + 8.0, 1.0, 9.0])]
-        {
-            let bounds = bounds(min, max);
-            let (middle, far) = middle_and_reach(&bounds);
-            for corner in 0..8 {
-                let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
-                let distance = Vec3::from([0, 1, 2].map(pick)).distance(middle);
-                assert!(distance < 0.95 * far, "{bounds:?}: {distance} and {far}");
-            }
-            assert!(far <= 3.001 * bounds.diagonal(), "{bounds:?}: {far}");
-        }
-        let park = middle_and_reach(&bounds([-90.0, 0.0, -90.0], [90.0, 30.0, 90.0]));
-        let with_a_ball = middle_and_reach(&bounds([-90.0, 0.0, -90.0], [93.0, 30.0, 91.0]));
-        assert_eq!(park, with_a_ball);
-    }
-
-    #[test]
-    fn triangles_that_do_not_fit_are_refused_before_anything_is_built() {
-        let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
-        let mesh =
-            Mesh { positions: corners, triangles: vec![[0, 1, 2]; 5000], materials: vec![0; 5000], ..Mesh::default() };
-        let geometry = Geometry { mesh, materials: vec![Default::default()], ..Geometry::default() };
-        let within = |limit| PreparedGeometry::new(&geometry, &Acceleration::Bvh, Budget::new(limit), &Unobserved);
-        assert!(within(None).is_ok());
-        match within(Some(1)).err() {
-            Some(RenderError::BuildMemory { triangles: 5000, short }) => {
-                assert_eq!(short.needed, 5000 * BYTES_TO_BUILD)
-            }
-            other => panic!("{other:?}"),
-        }
-    }
 }

@@ -17,7 +17,7 @@ use crate::prepared::PreparedScene;
 use crate::stats::Stats;
 
 /// Probes per row, since memory is planned by rows.
-pub(crate) const ROW: u32 = 1024;
+pub const ROW: u32 = 1024;
 
 /// What given points see of each light.
 #[derive(Clone, Debug)]
@@ -68,7 +68,8 @@ pub struct GivenPoints<'a> {
     points: &'a [Vec3],
     normals: &'a [Vec3],
     /// A box around the points and the triangles of the scene.
-    pub(crate) bounds: Bounds,
+    #[doc(hidden)]
+    pub bounds: Bounds,
     /// Where the other two corners of a probe's triangle lie, see [`GivenPoints::part`].
     far_corner: Vec3,
 }
@@ -115,12 +116,14 @@ impl<'a> GivenPoints<'a> {
     }
 
     /// Rows of [`ROW`] probes, of which the last may be shorter.
-    pub(crate) fn rows(&self) -> u32 {
+    #[doc(hidden)]
+    pub fn rows(&self) -> u32 {
         self.len().div_ceil(ROW as usize) as u32
     }
 
     /// The probes of some rows.
-    pub(crate) fn range(&self, rows: &Range<u32>) -> Range<usize> {
+    #[doc(hidden)]
+    pub fn range(&self, rows: &Range<u32>) -> Range<usize> {
         let start = |row: u32| (row as usize * ROW as usize).min(self.len());
         start(rows.start)..start(rows.end)
     }
@@ -130,7 +133,8 @@ impl<'a> GivenPoints<'a> {
     /// A segment that leaves a surface starts at some distance from it, which depends on the size of the triangle's coordinates
     /// ([`SurfacePoint`](crate::SurfacePoint)). Which triangle of the scene a probe lies on is not known, so the coordinates of its
     /// own triangle add up to at least those of any.
-    pub(crate) fn part(&self, rows: &Range<u32>) -> Probes {
+    #[doc(hidden)]
+    pub fn part(&self, rows: &Range<u32>) -> Probes {
         let range = self.range(rows);
         let n = range.len();
         let mut wave = Probes { rays: RayList::default(), hits: Vec::with_capacity(n) };
@@ -148,35 +152,3 @@ impl<'a> GivenPoints<'a> {
 
 /// Rays are numbered in 32 bits.
 const MOST_PROBES: usize = u32::MAX as usize - 1;
-
-#[cfg(test)]
-mod tests {
-    use lightmesh_layout::constants::GAMMA_32;
-
-    use super::*;
-    use crate::observer::Unobserved;
-    use crate::settings::Acceleration;
-    use crate::surface::SurfacePoint;
-
-    #[test]
-    fn a_probe_is_the_point_with_its_normal() {
-        let scene = lightmesh_testkit::half_plane();
-        let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
-        let points: Vec<Vec3> = (0..3000).map(|i| Vec3::new(0.3, -0.7, 1.1) * i as f32 / 10.0).collect();
-        let normals: Vec<Vec3> = (0..3000).map(|i| Vec3::new(1.0, i as f32 - 7.0, -0.3)).collect();
-        let given = GivenPoints::new(&scene, &points, &normals).unwrap();
-        assert_eq!((given.rows(), given.range(&(2..3))), (3, 2048..3000));
-        let wave = given.part(&(1..3));
-        assert_eq!(wave.hits.len(), 3000 - 1024);
-        for (ray, hit) in wave.hits.iter().enumerate() {
-            let probe = ray + 1024;
-            let point = SurfacePoint::new(&wave.rays.rays[ray], hit, &wave.rays.probes[hit.triangle as usize]);
-            assert_eq!(point.position, points[probe]);
-            assert!(point.normal.abs_diff_eq(normals[probe].normalize(), 1e-6), "{}", point.normal);
-            let far = given.bounds.farthest();
-            assert!((point.origin - point.position).dot(point.normal) >= GAMMA_32 * points[probe].abs().max_element());
-            assert!((point.origin - point.position).length() <= 5.0 * GAMMA_32 * far);
-            assert_eq!(wave.rays.pixels[ray] as usize, probe);
-        }
-    }
-}

@@ -15,7 +15,7 @@ const INTERVAL: f64 = 0.05;
 /// A wave of n rays counts as n pieces in each of its stages. The number of camera rays is known from the beginning, the number of
 /// mirror rays only once they are traced.
 #[derive(Debug)]
-pub(crate) struct Work {
+pub struct Work {
     start: Instant,
     total: AtomicU64,
     done: AtomicU64,
@@ -48,8 +48,15 @@ struct Current {
     share: u64,
 }
 
+impl Default for Work {
+    fn default() -> Work {
+        Work::new()
+    }
+}
+
 impl Work {
-    pub(crate) fn new() -> Work {
+    /// Nothing is expected yet.
+    pub fn new() -> Work {
         Work {
             start: Instant::now(),
             total: AtomicU64::new(0),
@@ -61,17 +68,17 @@ impl Work {
     }
 
     /// Adds pieces to the image's total.
-    pub(crate) fn expect(&self, pieces: u64) {
+    pub fn expect(&self, pieces: u64) {
         self.total.fetch_add(pieces, Ordering::Relaxed);
     }
 
     /// A part begins that is the share of the image from `before` to `after`: what is expected from now on is its own.
-    pub(crate) fn begin_part(&self, [before, after]: [f64; 2]) {
+    pub fn begin_part(&self, [before, after]: [f64; 2]) {
         *self.part() = Some(Part { before, after, done: self.done(), total: self.total() });
     }
 
     /// Pieces of the image that are done, for [`rewind`](Work::rewind).
-    pub(crate) fn done(&self) -> u64 {
+    pub fn done(&self) -> u64 {
         self.done.load(Ordering::Relaxed)
     }
 
@@ -82,12 +89,12 @@ impl Work {
     }
 
     /// Total pieces of the image, as far as known.
-    pub(crate) fn total(&self) -> u64 {
+    pub fn total(&self) -> u64 {
         self.total.load(Ordering::Relaxed)
     }
 
     /// A stage begins that has `total` pieces of its own and counts as `share` pieces of the image.
-    pub(crate) fn begin(&self, observer: &dyn Observer, stage: Stage, total: u64, share: u64) {
+    pub fn begin(&self, observer: &dyn Observer, stage: Stage, total: u64, share: u64) {
         *self.current() = Some(Current { stage, total, done: 0, share });
         observer.begin(stage, total);
     }
@@ -105,7 +112,7 @@ impl Work {
     }
 
     /// The stage has ended. Pieces that it did not report are done as well.
-    pub(crate) fn end(&self, observer: &dyn Observer, stage: Stage) {
+    pub fn end(&self, observer: &dyn Observer, stage: Stage) {
         let rest = self.current().map_or(0, |current| current.total - current.done);
         if rest > 0 {
             self.advance(observer, rest);
@@ -154,37 +161,5 @@ impl Current {
     fn of_picture(&self) -> u64 {
         let share = u128::from(self.share) * u128::from(self.done) / u128::from(self.total.max(1));
         share as u64
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Keeps the latest progress.
-    #[derive(Default)]
-    struct Latest(Mutex<Progress>);
-
-    impl Observer for Latest {
-        fn progress(&self, progress: Progress) {
-            *self.0.lock().unwrap() = progress;
-        }
-    }
-
-    #[test]
-    fn parts_count_by_their_share_of_the_image() {
-        let (work, latest) = (Work::new(), Latest::default());
-        let mut shares = Vec::new();
-        for (part, pieces) in [([0.0, 0.25], 10), ([0.25, 0.5], 1000), ([0.5, 1.0], 10)] {
-            work.begin_part(part);
-            work.expect(2 * pieces);
-            for _ in 0..2 {
-                work.begin(&latest, Stage::Shade, pieces, pieces);
-                work.end(&latest, Stage::Shade);
-                shares.push(latest.0.lock().unwrap().done);
-            }
-        }
-        assert_eq!(shares, [0.125, 0.25, 0.375, 0.5, 0.75, 1.0]);
-        assert_eq!(work.done(), work.total());
     }
 }

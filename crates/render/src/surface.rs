@@ -80,7 +80,7 @@ pub(crate) fn smooth_at(mesh: &Mesh, hit: &Hit) -> Option<Smooth> {
 /// The unit normal that shading uses: interpolated if the mesh has normals, else geometric; always on the side of the geometric
 /// normal `facing`.
 #[inline(always)]
-pub(crate) fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
+pub fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
     let Some(smooth) = smooth_at(mesh, hit) else { return facing };
     let normal = smooth.normal / smooth.square.sqrt();
     if normal.dot(facing) < 0.0 { -normal } else { normal }
@@ -91,44 +91,10 @@ pub(crate) fn shading_normal(mesh: &Mesh, hit: &Hit, facing: Vec3) -> Vec3 {
 /// A light may lie exactly in a surface (a lamp in a ceiling). The hit on that surface has `t` = 1 give or take the rounding of
 /// both ends; the segment stops that much earlier.
 #[inline(always)]
-pub(crate) fn long_segment(origin: Vec3, target: Vec3) -> Ray {
+pub fn long_segment(origin: Vec3, target: Vec3) -> Ray {
     let direction = target - origin;
     let length = direction.abs().max_element();
     let error = GAMMA_32 * origin.abs().max(target.abs()).max_element();
     let spared = if error < 0.5 * length { error / length } else { 0.5 };
     Ray { origin, direction, t_max: 1.0 - spared }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_normal_faces_the_viewer_and_the_origin_leaves_the_surface() {
-        let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| corner + Vec3::splat(100.0)), 0);
-        let hit = Hit { t: 1.0, u: 0.25, v: 0.25, triangle: 0 };
-        for z in [1.0, -1.0] {
-            let ray = Ray { origin: Vec3::ZERO, direction: Vec3::new(0.0, 0.0, -z), t_max: f32::INFINITY };
-            let point = SurfacePoint::new(&ray, &hit, &triangle);
-            assert_eq!(point.position, Vec3::new(100.25, 100.25, 100.0));
-            assert_eq!(point.normal, Vec3::new(0.0, 0.0, z));
-            let height = (point.origin.z - 100.0) * z;
-            assert!(height > 1e-5 && height < 1e-3, "{height}");
-        }
-    }
-
-    #[test]
-    fn a_floor_at_height_zero_is_left_too() {
-        let triangle = Triangle::new([Vec3::ZERO, Vec3::X * 30.0, Vec3::NEG_Z * 30.0], 0);
-        let hit = Hit { t: 1.0, u: 0.25, v: 0.25, triangle: 0 };
-        let ray = Ray { origin: Vec3::Y, direction: Vec3::NEG_Y, t_max: f32::INFINITY };
-        assert!(SurfacePoint::new(&ray, &hit, &triangle).origin.y > 1e-6);
-    }
-
-    #[test]
-    fn a_long_segment_stops_before_its_end() {
-        let ray = long_segment(Vec3::ZERO, Vec3::new(0.0, 100.0, 0.0));
-        assert!(ray.t_max < 1.0 && ray.t_max > 0.9999);
-        assert_eq!(long_segment(Vec3::ONE, Vec3::ONE).direction, Vec3::ZERO);
-    }
 }

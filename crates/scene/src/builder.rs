@@ -1,4 +1,7 @@
 //! Collects the parts of a scene and chooses the local frame once all are known.
+//!
+//! A scene has its own local frame: files are read in double precision and stored in single precision relative to a point near the geometry, so
+//! that a scene may lie far from the world's origin.
 
 use std::ops::Range;
 

@@ -60,9 +60,9 @@ impl Instancing {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            Instancing::Auto => "if copies would have more than a million triangles",
-            Instancing::Always => "all shapes with several places",
-            Instancing::Never => "each place has a copy",
+            Instancing::Auto => "If copies would have more than a million triangles",
+            Instancing::Always => "Wherever a mesh has several places",
+            Instancing::Never => "A copy for each place; grids need this",
         }
     }
 

@@ -32,8 +32,8 @@ impl Falloff {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            Falloff::None => "Nothing, as in the thesis",
-            Falloff::InverseSquare => "Intensity is in candela",
+            Falloff::None => "The same at any distance, as in the thesis",
+            Falloff::InverseSquare => "Intensity in candela, divided by the squared distance",
         }
     }
 }

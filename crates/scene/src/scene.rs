@@ -1,4 +1,4 @@
-//! The scene itself.
+//! [`Scene`], the scene itself: geometry, lights and cameras.
 
 use std::path::PathBuf;
 use std::sync::Arc;

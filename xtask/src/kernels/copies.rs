@@ -14,10 +14,13 @@ use std::path::Path;
 use super::{LAYOUT, sources_under};
 
 /// Macros and numbers that only kernels use, and why.
-const ALLOWED: [(&str, &str); 32] = [
+const ALLOWED: [(&str, &str); 35] = [
     ("0x7ff0000000000000ll", "the bits of a double's exponent; Rust has functions for them"),
     ("CUT_OUTS", "the host chooses the module that was compiled with it"),
     ("INSTANCES", "modules without it are for scenes without instances; the host chooses"),
+    ("WALKS_bvh", "which structures a module walks; the host chooses the module"),
+    ("WALKS_grid", "which structures a module walks; the host chooses the module"),
+    ("WALKS_brute_force", "which structures a module walks; the host chooses the module"),
     ("PLANE_BIAS", "a byte is converted to a float by adding to its bits; the host casts"),
     ("PLANE_BIAS_BITS", "the bits of PLANE_BIAS"),
     ("2304.0f", "the 256 steps of a node's frame and the error of PLANE_BIAS"),

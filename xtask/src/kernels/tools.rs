@@ -20,13 +20,31 @@ pub(super) struct Tools {
     pub(super) ptxas_version: String,
 }
 
+/// The pinned versions.
+pub(super) struct Versions {
+    pub(super) nvrtc: String,
+    pub(super) ptxas: String,
+}
+
+/// Reads the pinned versions; nothing is installed.
+pub(super) fn versions() -> Result<Versions, Box<dyn Error>> {
+    let requirements = requirements()?;
+    Ok(Versions {
+        nvrtc: pinned(&requirements, "nvidia-cuda-nvrtc-cu12")?,
+        ptxas: pinned(&requirements, "nvidia-cuda-nvcc-cu12")?,
+    })
+}
+
+fn requirements() -> Result<String, String> {
+    fs::read_to_string(REQUIREMENTS).map_err(|error| format!("cannot read {REQUIREMENTS}: {error}"))
+}
+
 /// Returns the pinned compilers; installs them into `folder` if they are missing.
 pub(super) fn install(folder: &Path) -> Result<Tools, Box<dyn Error>> {
     if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
         return Err("the pinned CUDA compilers run on x86-64 Linux; build the kernels there".into());
     }
-    let requirements =
-        fs::read_to_string(REQUIREMENTS).map_err(|error| format!("cannot read {REQUIREMENTS}: {error}"))?;
+    let requirements = requirements()?;
     let stamp = folder.join("installed.txt");
     if fs::read_to_string(&stamp).ok().as_ref() != Some(&requirements) {
         fetch(folder)?;

@@ -1,30 +1,20 @@
 use super::*;
-use crate::{Gpu, Machine, Program, Results, Row, Samples};
+use crate::report::tests::results;
+use crate::{Row, Samples};
 
 const COMMENT: &str = "<!-- from runs/a.json: any; where scene=garden; columns step, render ms as ms -->";
 
 /// A folder with results.
 fn root() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let mut rows = Vec::new();
-    for (scene, step, seconds) in [("garden", 0.1, 0.0056), ("garden", 0.05, 0.0078), ("gazebo, small", 2.0, 0.002)] {
-        let mut row = Row::new("any", [("scene", scene.into()), ("step", step.into())]);
-        row.seconds.insert("render".to_owned(), Samples(vec![seconds]));
-        rows.push(row);
-    }
-    let gpus: Vec<Gpu> = Vec::new();
-    let results = Results {
-        version: Results::VERSION,
-        suite: "any".into(),
-        quick: false,
-        program: Program { name: "lightmesh".into(), version: "0".into(), commit: None, command: String::new() },
-        machine: Machine { cpu: "a".into(), threads: 1, memory_bytes: 1, os: "b".into(), gpus },
-        started: "2026-01-31T12:00:00Z".into(),
-        seconds: 1.0,
-        rows,
-        pictures: vec![],
-        notes: vec![],
-    };
+    let results = results("any", |rows| {
+        for (scene, step, seconds) in [("garden", 0.1, 0.0056), ("garden", 0.05, 0.0078), ("gazebo, small", 2.0, 0.002)]
+        {
+            let mut row = Row::new("any", [("scene", scene.into()), ("step", step.into())]);
+            row.seconds.insert("render".to_owned(), Samples(vec![seconds]));
+            rows.push(row);
+        }
+    });
     std::fs::create_dir(folder.path().join("runs")).unwrap();
     std::fs::write(folder.path().join("runs/a.json"), serde_json::to_string(&results).unwrap()).unwrap();
     folder

@@ -1,16 +1,20 @@
 //! The content of a report, independent of its presentation: [`markdown`](super::markdown) and [`html`](super::html) both render
-//! it.
-
-use super::headline::Figure;
-use super::plot::Plot;
+//! it. It holds its plots and images.
 
 /// A whole report.
 #[derive(Clone, Debug)]
 pub(crate) struct Document {
     pub(crate) title: String,
-    /// What a page begins with.
+    /// The figures that it begins with.
     pub(crate) figures: Vec<Figure>,
     pub(crate) sections: Vec<Section>,
+}
+
+/// A large number and its meaning.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Figure {
+    pub(crate) value: String,
+    pub(crate) label: String,
 }
 
 /// A part with a heading.
@@ -25,45 +29,20 @@ pub(crate) struct Section {
 pub(crate) enum Block {
     /// A paragraph.
     Text(String),
-    /// Statements derived from the data.
-    Findings(Vec<Finding>),
-    /// A table.
     Table(Table),
-    /// Curves.
-    Plot(Plot),
-    /// Images in a row.
-    Strip(Vec<Shot>),
-    /// An image compared with its reference.
-    Pair(Box<Pair>),
+    /// An SVG file.
+    Plot(Image),
+    /// PNG files, in a row.
+    Pictures(Vec<Image>),
 }
 
-/// A statement derived from the data, with its verdict.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Finding {
-    pub(crate) verdict: Verdict,
-    pub(crate) text: String,
-}
-
-/// Whether the method is ahead.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Verdict {
-    Wins,
-    Loses,
-    /// In some images but not in others, or in time but not in error; the statement says where.
-    Depends,
-    Open,
-}
-
-impl Verdict {
-    /// A word for it, so that it does not rely on colour.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Verdict::Wins => "wins",
-            Verdict::Loses => "loses",
-            Verdict::Depends => "depends",
-            Verdict::Open => "note",
-        }
-    }
+/// A plot or an image, with its file.
+#[derive(Clone, Debug)]
+pub(crate) struct Image {
+    pub(crate) title: String,
+    /// Relative to the folder of the report.
+    pub(crate) file: String,
+    pub(crate) bytes: Vec<u8>,
 }
 
 /// A table. Every row has a cell for each column.
@@ -74,7 +53,7 @@ pub(crate) struct Table {
     pub(crate) caption: String,
     pub(crate) columns: Vec<Column>,
     pub(crate) rows: Vec<Vec<Cell>>,
-    /// Detailed: a page may collapse it.
+    /// Detailed: a page collapses it.
     pub(crate) folded: bool,
 }
 
@@ -97,37 +76,45 @@ pub(crate) struct Cell {
     pub(crate) text: String,
     /// The number behind the text, by which a page sorts.
     pub(crate) value: Option<f64>,
-    /// Length of the bar behind the number, in [0, 1].
-    pub(crate) bar: Option<f64>,
 }
 
-/// An image: its file name and title.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Shot {
-    pub(crate) file: String,
-    pub(crate) size: [u32; 2],
-    pub(crate) title: String,
-}
+impl Document {
+    /// Plots and images.
+    pub(crate) fn images(&self) -> impl Iterator<Item = &Image> {
+        self.sections.iter().flat_map(|section| &section.blocks).flat_map(|block| match block {
+            Block::Plot(image) => std::slice::from_ref(image),
+            Block::Pictures(images) => images,
+            _ => &[],
+        })
+    }
 
-/// An image, its reference, and their difference.
-#[derive(Clone, Debug)]
-pub(crate) struct Pair {
-    pub(crate) picture: Shot,
-    pub(crate) reference: Shot,
-    pub(crate) difference: Shot,
-    pub(crate) mean_flip: f64,
-    pub(crate) rmse: f64,
-}
-
-impl Section {
-    pub(crate) fn new(title: impl Into<String>, blocks: Vec<Block>) -> Section {
-        Section { title: title.into(), blocks }
+    /// Numbers files that would have the same name.
+    pub(crate) fn name_files(&mut self) {
+        let mut taken: Vec<String> = Vec::new();
+        for block in self.sections.iter_mut().flat_map(|section| &mut section.blocks) {
+            let images = match block {
+                Block::Plot(image) => std::slice::from_mut(image),
+                Block::Pictures(images) => images,
+                _ => continue,
+            };
+            for image in images {
+                let (base, extension) = image.file.rsplit_once('.').unwrap_or((&image.file, ""));
+                image.file = free_name(base, &format!(".{extension}"), |name| taken.iter().any(|known| known == name));
+                taken.push(image.file.clone());
+            }
+        }
     }
 }
 
-impl Finding {
-    pub(crate) fn new(verdict: Verdict, text: impl Into<String>) -> Finding {
-        Finding { verdict, text: text.into() }
+impl Image {
+    /// A plot, with the name of its file.
+    pub(crate) fn plot(name: &str, title: String, svg: String) -> Image {
+        Image { file: format!("plots/{}.svg", slug(name)), title, bytes: svg.into_bytes() }
+    }
+
+    /// An image, in a file that is named after its experiment and title.
+    pub(crate) fn picture(experiment: &str, title: String, png: Vec<u8>) -> Image {
+        Image { file: format!("pictures/{}.png", slug(&format!("{experiment} {title}"))), title, bytes: png }
     }
 }
 
@@ -151,47 +138,52 @@ impl Column {
 impl Cell {
     /// A number, or an empty cell if there is none.
     pub(crate) fn number(value: Option<f64>, text: impl Fn(f64) -> String) -> Cell {
-        Cell { text: value.map(text).unwrap_or_default(), value, bar: None }
+        Cell { text: value.map(text).unwrap_or_default(), value }
     }
 }
 
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Cell {
-        Cell { text: text.into(), value: None, bar: None }
+        Cell { text: text.into(), value: None }
     }
 }
 
 impl Table {
-    /// A table without rows.
-    pub(crate) fn new(name: impl Into<String>, caption: impl Into<String>, columns: Vec<Column>) -> Table {
-        Table { name: name.into(), caption: caption.into(), columns, rows: Vec::new(), folded: false }
+    /// A table with a number of rows, without columns.
+    pub(crate) fn new(name: impl Into<String>, caption: impl Into<String>, rows: usize) -> Table {
+        let rows = vec![Vec::new(); rows];
+        Table { name: name.into(), caption: caption.into(), columns: Vec::new(), rows, folded: false }
     }
 
-    /// The same, collapsible.
-    pub(crate) fn folded(self) -> Table {
-        Table { folded: true, ..self }
-    }
-
-    /// The same without columns that are empty in all rows.
-    pub(crate) fn without_empty_columns(mut self) -> Table {
-        let filled: Vec<bool> =
-            (0..self.columns.len()).map(|column| self.rows.iter().any(|row| !row[column].text.is_empty())).collect();
-        let mut place = filled.iter();
-        self.columns.retain(|_| place.next() == Some(&true));
-        for row in &mut self.rows {
-            let mut place = filled.iter();
-            row.retain(|_| place.next() == Some(&true));
+    /// Adds a column with a cell for each row, unless all cells are empty.
+    pub(crate) fn add(&mut self, column: Column, cells: impl IntoIterator<Item = Cell>) {
+        let cells: Vec<Cell> = cells.into_iter().collect();
+        if cells.iter().any(|cell| !cell.text.is_empty()) {
+            self.columns.push(column);
+            self.rows.iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
         }
-        self
     }
 
     /// Adjacent columns under one heading, with their number.
     pub(crate) fn groups(&self) -> Vec<(&str, usize)> {
-        self.columns
-            .chunk_by(|a, b| a.group == b.group)
-            .map(|columns| (columns[0].group.as_str(), columns.len()))
-            .collect()
+        let groups = self.columns.chunk_by(|a, b| a.group == b.group);
+        groups.map(|columns| (columns[0].group.as_str(), columns.len())).collect()
     }
+}
+
+/// The base with the extension, numbered if that name is taken.
+pub(crate) fn free_name(base: &str, extension: &str, taken: impl Fn(&str) -> bool) -> String {
+    let endings = std::iter::once(String::new()).chain((2..).map(|number| format!("-{number}")));
+    let mut names = endings.map(|ending| format!("{base}{ending}{extension}"));
+    names.find(|name| !taken(name)).unwrap_or_default()
+}
+
+/// A file name from any text: lower-case letters, digits and hyphens.
+pub(crate) fn slug(text: &str) -> String {
+    let words = text.to_lowercase();
+    let words: Vec<&str> =
+        words.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    if words.is_empty() { "picture".to_owned() } else { words.join("-") }
 }
 
 #[cfg(test)]
@@ -199,23 +191,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn empty_columns_go_and_the_others_stay_in_place() {
-        let columns = ["a", "b", "c"].map(|name| Column::numbers(name, name)).to_vec();
-        let mut table = Table::new("t", "", columns);
-        table.rows = vec![vec!["1".into(), "".into(), "2".into()], vec!["".into(), "".into(), "3".into()]];
-        let table = table.without_empty_columns();
-        assert_eq!(table.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>(), ["a", "c"]);
-        assert_eq!(table.rows[1], ["".into(), "3".into()]);
+    fn empty_columns_are_left_out_and_neighbours_share_a_heading() {
+        let mut table = Table::new("t", "", 2);
+        for (name, group, cells) in
+            [("a", "", ["1", ""]), ("b", "CPU", ["", ""]), ("c", "CPU", ["2", "3"]), ("d", "CPU", ["4", ""])]
+        {
+            table.add(Column::numbers(name, name).below(group), cells.map(Cell::from));
+        }
+        assert_eq!(table.groups(), [("", 1), ("CPU", 2)]);
+        assert_eq!(table.rows[1], ["".into(), "3".into(), "".into()]);
     }
 
     #[test]
-    fn neighbours_share_a_heading() {
-        let columns = vec![
-            Column::words("a", "a"),
-            Column::numbers("b", "b").below("CPU"),
-            Column::numbers("c", "c").below("CPU"),
-            Column::numbers("d", "d").below("GPU"),
-        ];
-        assert_eq!(Table::new("t", "", columns).groups(), [("", 1), ("CPU", 2), ("GPU", 1)]);
+    fn names_of_files_are_harmless_and_distinct() {
+        let pictures = ["../R = 2.1", "r-2-1", "…", ""].map(|title| Image::picture("", title.to_owned(), vec![]));
+        let section = Section { title: String::new(), blocks: vec![Block::Pictures(pictures.to_vec())] };
+        let mut document = Document { title: String::new(), figures: vec![], sections: vec![section] };
+        document.name_files();
+        let files: Vec<&str> = document.images().map(|image| image.file.as_str()).collect();
+        let expected = ["r-2-1", "r-2-1-2", "picture", "picture-2"].map(|name| format!("pictures/{name}.png"));
+        assert_eq!(files, expected);
     }
 }

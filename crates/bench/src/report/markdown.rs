@@ -2,15 +2,18 @@
 
 use lightmesh_files::visible;
 
-use super::document::{Block, Column, Document, Finding, Pair, Shot, Table};
-use super::numbers;
+use super::document::{Block, Column, Document, Image, Table};
 
-/// Maximum width of an image in a row, in pixels.
+/// Width of an image in a row, in pixels.
 const WIDTH: u32 = 260;
 
 /// The whole text.
 pub(crate) fn text(document: &Document) -> String {
     let mut out = format!("# {}\n", escaped(&document.title));
+    if !document.figures.is_empty() {
+        let figures = document.figures.iter().map(|figure| format!("**{}** {}", figure.value, escaped(&figure.label)));
+        out += &format!("\n{}\n", figures.map(|figure| format!("- {figure}")).collect::<Vec<_>>().join("\n"));
+    }
     for section in &document.sections {
         out += &format!("\n## {}\n", escaped(&section.title));
         for block in &section.blocks {
@@ -21,7 +24,7 @@ pub(crate) fn text(document: &Document) -> String {
     out
 }
 
-/// Escapes tables, tags, emphasis, and what would not be seen.
+/// Escapes tables, tags, emphasis and invisible letters.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in visible(&text.replace('\n', " ")).chars() {
@@ -37,19 +40,14 @@ fn escaped(text: &str) -> String {
 fn block(block: &Block) -> String {
     match block {
         Block::Text(text) => format!("{}\n", escaped(text)),
-        Block::Findings(findings) => findings.iter().map(finding).collect(),
+        Block::Table(table) if table.caption.is_empty() => self::table(table),
         Block::Table(table) => format!("{}\n\n{}", escaped(&table.caption), self::table(table)),
         Block::Plot(plot) => {
-            let caption = escaped(&plot.caption);
-            format!("![{caption}](plots/{}.svg)\n\n{caption}\n", plot.name)
+            let caption = escaped(&plot.title);
+            format!("![{caption}]({})\n\n{caption}\n", plot.file)
         }
-        Block::Strip(shots) => row(&shots.iter().collect::<Vec<_>>()),
-        Block::Pair(pair) => self::pair(pair),
+        Block::Pictures(images) => row(images),
     }
-}
-
-fn finding(Finding { verdict, text }: &Finding) -> String {
-    format!("- **{}**: {}\n", verdict.word(), escaped(text))
 }
 
 /// The table without its caption; group headings are prepended to titles.
@@ -73,24 +71,14 @@ fn title(column: &Column) -> String {
 }
 
 /// Images side by side, as a table with one row.
-fn row(shots: &[&Shot]) -> String {
-    let cells = |cell: &dyn Fn(&Shot) -> String| {
-        format!("| {} |\n", shots.iter().map(|shot| cell(shot)).collect::<Vec<_>>().join(" | "))
-    };
-    let pictures = cells(&|shot| {
-        let width = shot.size[0].min(WIDTH);
-        format!(
-            "<img src=\"{}\" width=\"{width}\" alt=\"{}\"/>",
-            shot.file,
-            super::html::escaped(&visible(&shot.title))
-        )
+fn row(images: &[Image]) -> String {
+    let cells =
+        |cell: &dyn Fn(&Image) -> String| format!("| {} |\n", images.iter().map(cell).collect::<Vec<_>>().join(" | "));
+    let pictures = cells(&|image| {
+        let title = super::html::escaped(&visible(&image.title));
+        format!("<img src=\"{}\" width=\"{WIDTH}\" alt=\"{title}\"/>", image.file)
     });
-    format!("{}|{}\n{pictures}", cells(&|shot| escaped(&shot.title)), "---|".repeat(shots.len()))
-}
-
-fn pair(pair: &Pair) -> String {
-    let figures = format!("Mean FLIP {}, RMSE {}.", numbers::small(pair.mean_flip), numbers::small(pair.rmse));
-    format!("{}\n{figures}\n", row(&[&pair.picture, &pair.reference, &pair.difference]))
+    format!("{}|{}\n{pictures}", cells(&|image| escaped(&image.title)), "---|".repeat(images.len()))
 }
 
 #[cfg(test)]
@@ -99,9 +87,9 @@ mod tests {
 
     #[test]
     fn cells_cannot_end_a_table() {
-        let columns = vec![Column::words("a", "a|b"), Column::numbers("n", "n").below("CPU")];
-        let mut table = Table::new("t", "", columns);
-        table.rows.push(vec!["<i> x_y\n\u{202e}\u{1b}".into(), "1".into()]);
+        let mut table = Table::new("t", "", 1);
+        table.add(Column::words("a", "a|b"), ["<i> x_y\n\u{202e}\u{1b}".into()]);
+        table.add(Column::numbers("n", "n").below("CPU"), ["1".into()]);
         let cells = r"| &lt;i> x\_y \\u{202e}\\u{1b} | 1 |";
         assert_eq!(super::table(&table), format!("| a\\|b | CPU: n |\n|---|--:|\n{cells}\n"));
     }

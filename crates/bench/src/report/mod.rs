@@ -1,32 +1,26 @@
 //! Reports: results as Markdown and as a single HTML page.
 //!
 //! 1. Result files are read and checked ([`Report::open`]); several are shown side by side, with rows matched by id.
-//! 2. They are turned into a document: what was run, what follows from it, and a section for each experiment (`layouts`).
-//!    Statements about where the method wins and loses are computed from the rows (`findings`, `rivals`). Experiments without a
-//!    layout are shown as a table of all keys and values.
+//! 2. They are turned into a document: figures of the default method first, a section for each experiment, the machine and
+//!    notes. Every experiment has a table of its keys, times and values, by `layout`; the thesis' timings and figure 11 have
+//!    tables of their own.
 //! 3. The document is rendered by `markdown` and `html`, and written with its plots and images ([`Report::write`]).
 
-mod assets;
+mod curves;
 mod document;
 mod error;
-mod findings;
 mod headline;
 mod html;
-mod layouts;
-mod likeness;
+mod layout;
 mod markdown;
 mod numbers;
 mod pictures;
 mod plot;
-mod rivals;
 mod runs;
-mod scale;
 mod select;
-mod settings;
 mod side_by_side;
-mod spread;
 mod summary;
-mod write;
+mod thesis;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -34,26 +28,31 @@ pub(crate) mod tests;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use assets::Assets;
-pub(crate) use assets::{free_name, slug};
 use document::{Block, Document, Section, Table};
+pub(crate) use document::{free_name, slug};
 pub use error::{PictureError, ReportError};
-use lightmesh_files::{Portion, read_inside};
-use pictures::Gallery;
-use runs::{Run, Runs};
+use lightmesh_files::{Portion, Ready, publish, read_inside};
+use pictures::{Fault, Gallery};
+use runs::{Run, Runs, distinct};
 pub use select::{Selection, TableError};
 
-use crate::Results;
+use crate::output::make_folder;
+use crate::{OutputError, Results};
+
+/// As Markdown and as HTML.
+const PAGES: [&str; 2] = ["report.md", "report.html"];
 
 /// A report ready to be written.
 #[derive(Clone, Debug)]
 pub struct Report {
     document: Document,
-    assets: Assets,
     inputs: Vec<PathBuf>,
 }
 
 impl Report {
+    /// Folders of plots and images in the folder of a report.
+    pub const FOLDERS: [&str; 2] = ["plots", "pictures"];
+
     /// Creates a report from result files. Runs are named after their files.
     ///
     /// # Errors
@@ -74,13 +73,9 @@ impl Report {
         }
         let inputs = results.iter().flat_map(|(path, results)| inputs(path, results)).collect();
         let paths: Vec<PathBuf> = results.iter().map(|(path, _)| path.clone()).collect();
-        let faulty = |(run, id, reason): pictures::Fault| ReportError::Picture { path: paths[run].clone(), id, reason };
-        let runs = named(results);
-        let mut assets = Assets::default();
-        let gallery = Gallery::new(&runs.0, &mut assets).map_err(faulty)?;
-        let mut document = document(&runs, &gallery, &mut assets).map_err(faulty)?;
-        assets.draw_plots(&mut document);
-        Ok(Report { document, assets, inputs })
+        let faulty = |(run, id, reason): Fault| ReportError::Picture { path: paths[run].clone(), id, reason };
+        let document = document(&named(results)).map_err(faulty)?;
+        Ok(Report { document, inputs })
     }
 
     /// The files of results, and those of images that they refer to.
@@ -95,11 +90,52 @@ impl Report {
 
     /// The report as a self-contained page.
     pub fn html(&self) -> String {
-        html::page(&self.document, &self.assets)
+        html::page(&self.document)
+    }
+
+    /// The pages of a report in `folder`.
+    pub fn pages(folder: &Path) -> [PathBuf; 2] {
+        PAGES.map(|name| folder.join(name))
+    }
+
+    /// Writes `report.md` with its plots and images, and `report.html`, to `folder`, which is created if missing. All files
+    /// appear together, pages after the files they refer to.
+    ///
+    /// # Errors
+    /// [`OutputError`], which names the file or folder.
+    pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
+        Ok(publish(self.ready(folder)?)?)
+    }
+
+    /// The files that [`Report::write`] writes to `folder`.
+    pub fn files(&self, folder: &Path) -> Vec<PathBuf> {
+        let images = self.document.images().map(|image| image.file.as_str());
+        images.chain(PAGES).map(|name| folder.join(name)).collect()
+    }
+
+    /// The files that [`Report::write`] writes, which appear only when they are published.
+    ///
+    /// # Errors
+    /// [`OutputError`], which names the file or folder.
+    pub fn ready(&self, folder: &Path) -> Result<Vec<Ready>, OutputError> {
+        make_folder(folder)?;
+        for part in Report::FOLDERS {
+            if self.document.images().any(|image| image.file.starts_with(part)) {
+                make_folder(&folder.join(part))?;
+            }
+        }
+        let mut files = Vec::new();
+        for image in self.document.images() {
+            files.push(Ready::with(folder.join(&image.file), &image.bytes)?);
+        }
+        for (path, page) in Report::pages(folder).into_iter().zip([self.markdown(), self.html()]) {
+            files.push(Ready::with(path, page.as_bytes())?);
+        }
+        Ok(files)
     }
 
     /// The tables by name.
-    pub(crate) fn tables(&self) -> impl Iterator<Item = &Table> {
+    fn tables(&self) -> impl Iterator<Item = &Table> {
         self.document.sections.iter().flat_map(|section| &section.blocks).filter_map(|block| match block {
             Block::Table(table) => Some(table),
             _ => None,
@@ -128,19 +164,24 @@ fn opened(path: &Path) -> Result<Results, ReportError> {
     Ok(results)
 }
 
-/// The whole report. Experiments appear in the order in which suites name them.
-fn document(runs: &Runs, gallery: &Gallery, assets: &mut Assets) -> Result<Document, pictures::Fault> {
-    let mut sections = vec![summary::section(runs)];
-    sections.extend(findings::section(runs));
-    sections.extend(side_by_side::section(runs, gallery, assets)?);
+/// The whole report.
+fn document(runs: &Runs) -> Result<Document, Fault> {
+    let gallery = Gallery::new(runs)?;
+    let mut sections = Vec::from_iter(side_by_side::section(runs, &gallery)?);
     for experiment in runs.experiments() {
-        let (title, mut blocks) = layouts::of(experiment, runs);
-        blocks.extend(gallery.blocks(&runs.0, experiment, assets)?);
-        sections.push(Section::new(title, blocks));
+        let mut blocks = layout::blocks(experiment, runs);
+        // Images stand above the tables about them.
+        let tables = blocks.iter().position(|block| matches!(block, Block::Table(_))).unwrap_or(blocks.len());
+        blocks.splice(tables..tables, gallery.blocks(experiment)?);
+        sections.push(Section { title: layout::title(experiment), blocks });
     }
+    sections.push(summary::section(runs));
     sections.extend(summary::notes(runs));
-    let suites = runs::distinct(runs.0.iter().map(|run| run.results.suite.as_str()));
-    Ok(Document { title: format!("Lightmesh: {}", suites.join(", ")), figures: headline::figures(runs), sections })
+    let suites = distinct(runs.0.iter().map(|run| run.results.suite.as_str()));
+    let mut document =
+        Document { title: format!("Lightmesh: {}", suites.join(", ")), figures: headline::figures(runs), sections };
+    document.name_files();
+    Ok(document)
 }
 
 /// Runs with distinct names: those of their files, numbered if they are the same.

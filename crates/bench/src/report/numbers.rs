@@ -15,15 +15,15 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     grouped(&format!("{rounded:.after$}"))
 }
 
-/// An error with three significant digits; below a ten-thousandth, with two and an exponent: 0.0341, 5.9e-7.
+/// Three significant digits; below a ten-thousandth, with two and an exponent: 0.0341, 5.9e-7.
 pub(crate) fn small(error: f64) -> String {
     const LEAST: f64 = 1e-4;
     if error != 0.0 && error.abs() < LEAST { format!("{error:.1e}") } else { significant(error, 3) }
 }
 
-/// Seconds as milliseconds with three significant digits.
+/// Seconds as milliseconds, as in [`small`].
 pub(crate) fn milliseconds(seconds: f64) -> String {
-    significant(1e3 * seconds, 3)
+    small(1e3 * seconds)
 }
 
 /// An integer.

@@ -1,20 +1,23 @@
 //! Curves as SVG.
 //!
-//! Colours are those of Okabe and Ito, which are distinguishable with colour blindness; each curve also has its own marker, and
-//! its name at its end. For dark mode, pages that embed a plot, and the style of a plot in a separate file, replace colours by
-//! attribute selectors (`[stroke="#0072B2"]`).
+//! Colours are those of Okabe and Ito, which are distinguishable with colour blindness; each curve also has its own marker.
 
+use std::ops::Range;
+
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::scale::Scale;
+use super::document::Image;
+use super::numbers;
 
 /// Size in pixels.
 const SIZE: (u32, u32) = (760, 400);
 /// Space for the names of curves on the right.
 const NAMES: u32 = 190;
-/// Minimum distance between names.
-const LINE: i32 = 17;
+/// Distance between names.
+const LINE: i32 = 19;
 const TEXT: i32 = 13;
 const MARK: i32 = 4;
 
@@ -31,29 +34,17 @@ const COLORS: [RGBColor; 6] = [
 /// Grid lines.
 const FAINT: RGBColor = RGBColor(204, 204, 204);
 
-/// For plots in separate files.
-const STYLE: &str = "<style>svg{color-scheme:light dark}@media(prefers-color-scheme:dark){\
-[fill=\"#000000\"]{fill:#ddd}[stroke=\"#000000\"]{stroke:#999}[stroke=\"#CCCCCC\"]{stroke:#444}\
-[stroke=\"#0072B2\"]{stroke:#4aa8e0}[fill=\"#0072B2\"]{fill:#4aa8e0}}</style>";
-
 /// Curves over two axes.
 #[derive(Clone, Debug)]
-pub(crate) struct Plot {
-    /// File name without extension.
-    pub(crate) name: String,
+pub(crate) struct Plot<'a> {
     pub(crate) caption: String,
-    pub(crate) x: Axis,
-    pub(crate) y: Axis,
+    /// Titles of both axes.
+    pub(crate) axes: [&'a str; 2],
+    /// Whether both are logarithmic; else they begin at 0, so that lengths can be compared.
+    pub(crate) log: bool,
     pub(crate) curves: Vec<Curve>,
     /// Vertical lines at some x, with a label.
     pub(crate) marks: Vec<(f64, String)>,
-}
-
-/// An axis of a plot.
-#[derive(Clone, Debug)]
-pub(crate) struct Axis {
-    pub(crate) title: String,
-    pub(crate) log: bool,
 }
 
 /// A curve: points in order of x.
@@ -65,41 +56,29 @@ pub(crate) struct Curve {
     pub(crate) scattered: bool,
 }
 
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type DrawResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-impl Plot {
-    /// The plot as SVG; `None` without a point that can be shown.
-    pub(crate) fn svg(&self) -> Option<String> {
-        let shown = self.shown();
-        let points = || shown.iter().flat_map(|curve| curve.points.iter().copied());
-        let x = Scale::over(points().map(|point| point.0), self.x.log)?;
-        let y = Scale::over(points().map(|point| point.1), self.y.log)?;
+impl Plot<'_> {
+    /// The plot in a file with that name; `None` without a point that the axes can show.
+    pub(crate) fn image(mut self, name: &str) -> Option<Image> {
+        let least = if self.log { f64::MIN_POSITIVE } else { 0.0 };
+        let fits = |value: f64| value.is_finite() && value >= least;
+        self.curves.iter_mut().for_each(|curve| curve.points.retain(|&(x, y)| fits(x) && fits(y)));
+        let points = || self.curves.iter().flat_map(|curve| curve.points.iter().copied());
+        let x = Scale::over(points().map(|point| point.0), self.log)?;
+        let y = Scale::over(points().map(|point| point.1), self.log)?;
         let mut svg = String::new();
+        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         // Drawing to a string does no I/O and only fails because of a bug: then there is no plot.
-        self.draw(&shown, x, y, SVGBackend::with_string(&mut svg, SIZE)).ok()?;
-        Some(labelled(&svg, &self.caption))
+        self.draw(&area, x, y).ok()?;
+        drop(area);
+        Some(Image::plot(name, self.caption.clone(), labelled(&svg, &self.caption)))
     }
 
-    /// The plot as a file.
-    pub(crate) fn file(&self) -> Option<String> {
-        let svg = self.svg()?;
-        let (head, rest) = svg.split_once('>')?;
-        Some(format!("{head}>{STYLE}{rest}"))
-    }
-
-    /// Curves with only the points that the axes can show.
-    fn shown(&self) -> Vec<Curve> {
-        let fits = |value: f64, axis: &Axis| value.is_finite() && (!axis.log || value > 0.0);
-        let mut curves = self.curves.clone();
-        for curve in &mut curves {
-            curve.points.retain(|&(x, y)| fits(x, &self.x) && fits(y, &self.y));
-        }
-        curves
-    }
-
-    fn draw(&self, curves: &[Curve], x: Scale, y: Scale, backend: SVGBackend) -> DrawResult {
-        let area = backend.into_drawing_area();
-        let mut chart = ChartBuilder::on(&area)
+    fn draw(&self, area: &Area, x: Scale, y: Scale) -> DrawResult {
+        area.fill(&WHITE)?;
+        let mut chart = ChartBuilder::on(area)
             .margin_top(12)
             .margin_left(10)
             .margin_right(NAMES)
@@ -108,46 +87,99 @@ impl Plot {
             .build_cartesian_2d(x, y)?;
         chart
             .configure_mesh()
-            .x_desc(&self.x.title)
-            .y_desc(&self.y.title)
+            .x_desc(self.axes[0])
+            .y_desc(self.axes[1])
             .light_line_style(TRANSPARENT)
             .bold_line_style(FAINT)
             .axis_style(FAINT)
             .label_style(("sans-serif", TEXT))
             .axis_desc_style(("sans-serif", TEXT))
             .draw()?;
-        for (place, _) in &self.marks {
-            chart.draw_series([PathElement::new([(*place, y.low()), (*place, y.high())], BLACK)])?;
-        }
-        for (curve, color) in curves.iter().zip(COLORS.iter().cycle()) {
-            if !curve.scattered {
-                chart.draw_series(LineSeries::new(curve.points.iter().copied(), color.stroke_width(2)))?;
-            }
-        }
-        let place = |point: &(f64, f64)| chart.backend_coord(point);
-        for (index, curve) in curves.iter().enumerate() {
-            for point in &curve.points {
-                draw_mark(&area, index, place(point))?;
-            }
-        }
-        for (index, (mark, name)) in self.marks.iter().enumerate() {
-            let (left, top) = place(&(*mark, y.high()));
+        for (index, (x, name)) in self.marks.iter().enumerate() {
+            chart.draw_series([PathElement::new([(*x, y.low), (*x, y.high)], BLACK)])?;
+            let (left, top) = chart.backend_coord(&(*x, y.high));
             // One below the other, as marks may be close to each other.
-            let top = top + 3 + LINE * index as i32;
-            area.draw(&Text::new(name.clone(), (left + 5, top), ("sans-serif", TEXT)))?;
+            area.draw(&Text::new(name.clone(), (left + 5, top + 3 + LINE * index as i32), ("sans-serif", TEXT)))?;
         }
-        let ends: Vec<_> = curves.iter().map(|curve| curve.points.last().map(place)).collect();
-        draw_names(&area, curves, &ends)?;
+        let left = (SIZE.0 - NAMES) as i32 + 14;
+        for (index, curve) in self.curves.iter().filter(|curve| !curve.points.is_empty()).enumerate() {
+            if !curve.scattered {
+                let line = COLORS[index % COLORS.len()].stroke_width(2);
+                chart.draw_series(LineSeries::new(curve.points.iter().copied(), line))?;
+            }
+            for point in &curve.points {
+                draw_mark(area, index, chart.backend_coord(point))?;
+            }
+            let height = 20 + LINE * index as i32;
+            draw_mark(area, index, (left, height))?;
+            let style = ("sans-serif", TEXT).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
+            area.draw(&Text::new(curve.name.clone(), (left + 12, height), style))?;
+        }
         area.present()
     }
 }
 
+/// An axis with ticks at round numbers.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    low: f64,
+    high: f64,
+    log: bool,
+}
+
+impl Scale {
+    /// An axis that shows all values, with a margin; `None` without values.
+    fn over(values: impl Iterator<Item = f64> + Clone, log: bool) -> Option<Scale> {
+        let low = values.clone().min_by(f64::total_cmp)?;
+        let high = values.max_by(f64::total_cmp)?;
+        let linear = if high > 0.0 { 1.04 * high } else { 1.0 };
+        Some(if log {
+            Scale { low: low / 1.15, high: 1.15 * high, log }
+        } else {
+            Scale { low: 0.0, high: linear, log }
+        })
+    }
+
+    /// 1, 2 and 5 times powers of ten, over more than 2.5 decades only those; or about six multiples of such a number.
+    fn ticks(&self) -> Vec<f64> {
+        let factors: &[f64] = if self.log && (self.high / self.low).log10() > 2.5 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+        let mut round = (-20..20).flat_map(|power| factors.iter().map(move |factor| factor * 10_f64.powi(power)));
+        if self.log {
+            return round.filter(|tick| (self.low..=self.high).contains(tick)).collect();
+        }
+        let step = round.find(|step| 6.0 * step >= self.high).unwrap_or(self.high);
+        (0..=(self.high / step) as u32).map(|index| f64::from(index) * step).collect()
+    }
+}
+
+impl Ranged for Scale {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let place = |value: f64| if self.log { value.ln() } else { value };
+        let share = (place(*value) - place(self.low)) / (place(self.high) - place(self.low));
+        limit.0 + (share * f64::from(limit.1 - limit.0)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        self.ticks()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.low..self.high
+    }
+}
+
+impl ValueFormatter<f64> for Scale {
+    fn format_ext(&self, value: &f64) -> String {
+        let text = numbers::significant(*value, 3);
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    }
+}
+
 /// A marker with the shape of its curve.
-fn draw_mark<B: DrawingBackend>(
-    area: &DrawingArea<B, plotters::coord::Shift>,
-    curve: usize,
-    at: (i32, i32),
-) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+fn draw_mark(area: &Area, curve: usize, at: (i32, i32)) -> DrawResult {
     let style = COLORS[curve % COLORS.len()].filled();
     match curve % 4 {
         0 => area.draw(&Circle::new(at, MARK, style)),
@@ -157,70 +189,27 @@ fn draw_mark<B: DrawingBackend>(
     }
 }
 
-/// Names at the ends of curves, moved apart if they would overlap.
-fn draw_names<B: DrawingBackend>(
-    area: &DrawingArea<B, plotters::coord::Shift>,
-    curves: &[Curve],
-    ends: &[Option<(i32, i32)>],
-) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
-    let left = (SIZE.0 - NAMES) as i32 + 12;
-    let mut order: Vec<(usize, i32)> =
-        ends.iter().enumerate().filter_map(|(index, end)| Some((index, end.as_ref()?.1))).collect();
-    order.sort_by_key(|&(_, height)| height);
-    let heights = apart(&order.iter().map(|&(_, height)| height).collect::<Vec<_>>());
-    for (&(index, _), height) in order.iter().zip(heights) {
-        draw_mark(area, index, (left, height))?;
-        let style = ("sans-serif", TEXT).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
-        area.draw(&Text::new(curves[index].name.clone(), (left + 12, height), style))?;
-    }
-    Ok(())
-}
-
-/// Heights in order, at least a line apart and within the page.
-fn apart(heights: &[i32]) -> Vec<i32> {
-    let mut placed: Vec<i32> = Vec::with_capacity(heights.len());
-    for &height in heights {
-        placed.push(placed.last().map_or(height, |last| height.max(last + LINE)));
-    }
-    // Names beyond the edge move up again, and push those above.
-    let mut limit = SIZE.1 as i32 - LINE / 2;
-    for height in placed.iter_mut().rev() {
-        *height = (*height).min(limit);
-        limit = *height - LINE;
-    }
-    placed
-}
-
-/// With a label for screen readers, and scaled to its container.
+/// With a label for screen readers, scaled to its container, and without the prolog, which has no place within a page.
 fn labelled(svg: &str, caption: &str) -> String {
     let fixed = format!("<svg width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
     let head = format!("<svg role=\"img\" aria-label=\"{}\"", super::html::escaped(caption));
-    let svg = svg.replacen(&fixed, &head, 1);
-    // Without the prolog, which has no place within a page.
-    svg.find("<svg").map_or(svg.clone(), |start| svg[start..].to_owned())
+    svg.find("<svg").map_or_else(String::new, |start| svg[start..].replacen(&fixed, &head, 1))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn plot(points: Vec<(f64, f64)>, log: bool) -> Plot {
-        let axis = |title: &str| Axis { title: title.to_owned(), log };
-        let curve = Curve { name: "a < b".to_owned(), points, scattered: false };
+    fn plot(points: Vec<(f64, f64)>, log: bool) -> Option<String> {
+        let curves = vec![Curve { name: "a < b".to_owned(), points, scattered: false }];
         let marks = vec![(2.0, "break-even".to_owned())];
-        Plot {
-            name: "p".into(),
-            caption: "A \"plot\"".into(),
-            x: axis("lights"),
-            y: axis("ms"),
-            curves: vec![curve],
-            marks,
-        }
+        let plot = Plot { caption: "A \"plot\"".into(), axes: ["lights", "ms"], log, curves, marks };
+        plot.image("p").map(|image| String::from_utf8(image.bytes).unwrap())
     }
 
     #[test]
     fn a_plot_has_its_names_and_no_prolog() {
-        let svg = plot(vec![(1.0, 2.0), (10.0, 30.0)], true).svg().unwrap();
+        let svg = plot(vec![(1.0, 2.0), (10.0, 30.0)], true).unwrap();
         assert!(svg.starts_with("<svg role=\"img\" aria-label=\"A &quot;plot&quot;\""), "{svg}");
         for text in ["a &lt; b", "break-even", "lights", "#0072B2"] {
             assert!(svg.contains(text), "{text} in {svg}");
@@ -228,17 +217,21 @@ mod tests {
     }
 
     #[test]
-    fn points_that_an_axis_lacks_are_left_out() {
-        assert!(plot(vec![(0.0, 1.0), (1.0, f64::NAN)], true).svg().is_none());
-        assert!(plot(vec![(0.0, 1.0)], false).svg().is_some());
-        assert!(plot(vec![], false).svg().is_none());
+    fn ticks_are_round_and_within_the_axis() {
+        let texts = |values: [f64; 2], log| {
+            let scale = Scale::over(values.into_iter(), log).unwrap();
+            scale.ticks().iter().map(|tick| scale.format_ext(tick)).collect::<Vec<_>>()
+        };
+        assert_eq!(texts([3.0, 97.0], false), ["0", "20", "40", "60", "80", "100"]);
+        assert_eq!(texts([0.3, 40.0], true), ["0.5", "1", "2", "5", "10", "20"]);
+        assert_eq!(texts([0.3, 4000.0], true), ["1", "10", "100", "1000"]);
+        assert_eq!(texts([0.0, 0.0], false).len(), 6);
     }
 
     #[test]
-    fn names_keep_apart_and_on_the_page() {
-        assert_eq!(apart(&[10, 12, 200]), [10, 27, 200]);
-        let low = SIZE.1 as i32;
-        let placed = apart(&[low, low, low]);
-        assert!(placed.windows(2).all(|pair| pair[1] - pair[0] >= LINE) && placed[2] < low, "{placed:?}");
+    fn points_that_an_axis_lacks_are_left_out() {
+        assert!(plot(vec![(0.0, 1.0), (1.0, f64::NAN)], true).is_none());
+        assert!(plot(vec![(0.0, 1.0)], false).is_some());
+        assert!(plot(vec![], false).is_none());
     }
 }

@@ -1,8 +1,7 @@
 //! Results side by side: several result files, each a run of a suite.
 
-use std::collections::BTreeMap;
-
-use crate::{Key, Results, Row};
+use super::{layout, numbers};
+use crate::{Key, Results, Row, WHOLE};
 
 /// Keys that say where a row was measured rather than what.
 pub(crate) const PLACES: [&str; 2] = ["device", "threads"];
@@ -36,7 +35,11 @@ impl<'a> Measured<'a> {
 
     /// A key as text; empty if missing.
     pub(crate) fn text(&self, name: &str) -> String {
-        self.key(name).map(super::layouts::key_text).unwrap_or_default()
+        match self.key(name) {
+            Some(Key::Number(number)) => numbers::setting(*number),
+            Some(Key::Word(word)) => word.clone(),
+            None => String::new(),
+        }
     }
 
     pub(crate) fn number(&self, name: &str) -> Option<f64> {
@@ -50,23 +53,25 @@ impl<'a> Measured<'a> {
         matches!(self.key(name), Some(Key::Word(key)) if key == word)
     }
 
-    /// Whether it is an image with light points: light-mesh mode, with no other lookup.
-    pub(crate) fn is_half_ball(&self) -> bool {
-        self.is("mode", "light-mesh") && (self.key("lookup").is_none() || self.is("lookup", "half-ball"))
+    /// Whether it was measured with occluder lists, the default method, by whichever key an experiment names it.
+    pub(crate) fn is_default(&self) -> bool {
+        self.row.keys.values().any(|key| matches!(key, Key::Word(word) if word == "lists" || word == "lightmesh lists"))
     }
 
     pub(crate) fn value(&self, name: &str) -> Option<f64> {
         self.row.values.get(name).copied()
     }
 
-    /// Median seconds of a stage; `render` is the whole frame.
+    /// Median seconds of a stage.
     pub(crate) fn median(&self, stage: &str) -> Option<f64> {
         self.row.median(stage)
     }
 
-    /// Minimum seconds of a stage.
-    pub(crate) fn min(&self, stage: &str) -> Option<f64> {
-        self.row.seconds.get(stage)?.min()
+    /// Median seconds of the whole frame: of `render`, or of the only timed stage.
+    pub(crate) fn whole(&self) -> Option<f64> {
+        let seconds = &self.row.seconds;
+        let only = || if seconds.len() == 1 { seconds.values().next() } else { None };
+        seconds.get(WHOLE).or_else(only)?.median()
     }
 
     /// The device as text: the CPU with its threads, or the GPU.
@@ -81,17 +86,14 @@ impl<'a> Measured<'a> {
         let device = match self.key("device") {
             Some(Key::Word(word)) if word == "cpu" => "CPU".to_owned(),
             Some(Key::Word(word)) if word == "cuda" => {
-                self.run.results.machine.gpus.first().map_or_else(|| "GPU".to_owned(), |gpu| gpu.name.clone())
+                machine.gpus.first().map_or_else(|| "GPU".to_owned(), |gpu| gpu.name.clone())
             }
             Some(key) => key.to_string(),
             None => String::new(),
         };
         let place = (device + &threads).trim_start_matches(", ").to_owned();
-        match (self.several, place.is_empty()) {
-            (false, _) => place,
-            (true, true) => self.run.label.clone(),
-            (true, false) => format!("{}: {place}", self.run.label),
-        }
+        let label = self.several.then(|| self.run.label.clone());
+        label.into_iter().chain((!place.is_empty()).then_some(place)).collect::<Vec<_>>().join(": ")
     }
 
     /// The device, in words that are the same on every machine: `cpu all`, `cpu 1`, `cuda`.
@@ -102,23 +104,9 @@ impl<'a> Measured<'a> {
     }
 
     /// All keys except those of the device and those named.
-    pub(crate) fn case(&self, without: &[&str]) -> Case {
-        let keys = self
-            .row
-            .keys
-            .iter()
-            .filter(|(name, _)| !PLACES.contains(&name.as_str()) && !without.contains(&name.as_str()));
-        Case(keys.map(|(name, key)| (name.clone(), key.clone())).collect())
-    }
-}
-
-/// Keys that several rows have in common.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Case(pub(crate) BTreeMap<String, Key>);
-
-impl Case {
-    pub(crate) fn text(&self, name: &str) -> String {
-        self.0.get(name).map(super::layouts::key_text).unwrap_or_default()
+    pub(crate) fn case(&self, without: &[&str]) -> Vec<(&'a str, &'a Key)> {
+        let left_out = |name: &str| PLACES.contains(&name) || without.contains(&name);
+        self.row.keys.iter().map(|(name, key)| (name.as_str(), key)).filter(|(name, _)| !left_out(name)).collect()
     }
 }
 
@@ -127,7 +115,8 @@ impl Runs {
     pub(crate) fn rows(&self, experiment: &str) -> Vec<Measured<'_>> {
         let rows: Vec<Measured> = self.all().filter(|measured| measured.row.experiment == experiment).collect();
         let cases = distinct(rows.iter().map(|measured| measured.case(&[])));
-        let of = |case: &Case| rows.iter().filter(|measured| measured.case(&[]) == *case).copied().collect::<Vec<_>>();
+        let of =
+            |case: &Vec<_>| rows.iter().filter(|measured| measured.case(&[]) == *case).copied().collect::<Vec<_>>();
         cases.iter().flat_map(of).collect()
     }
 
@@ -137,12 +126,13 @@ impl Runs {
         self.0.iter().flat_map(move |run| run.results.rows.iter().map(move |row| Measured { run, row, several }))
     }
 
-    /// Names of experiments with rows or images, in order of appearance.
+    /// Names of experiments with rows or images, in the order of a report.
     pub(crate) fn experiments(&self) -> Vec<&str> {
-        let rows = self.0.iter().flat_map(|run| run.results.rows.iter().map(|row| row.experiment.as_str()));
-        let pictures =
-            self.0.iter().flat_map(|run| run.results.pictures.iter().map(|picture| picture.experiment.as_str()));
-        distinct(rows.chain(pictures))
+        let rows = self.all().map(|measured| measured.row.experiment.as_str());
+        let pictures = self.0.iter().flat_map(|run| &run.results.pictures).map(|picture| picture.experiment.as_str());
+        let mut experiments = distinct(rows.chain(pictures));
+        experiments.sort_by_key(|experiment| layout::place(experiment));
+        experiments
     }
 }
 

@@ -50,47 +50,42 @@ impl Report {
     ///
     /// # Errors
     /// [`TableError`] if there is no such table, column or row.
-    pub fn table(&self, selection: &Selection) -> Result<String, TableError> {
-        let table = self.tables().find(|table| table.name == selection.table).ok_or_else(|| TableError::NoTable {
-            name: selection.table.clone(),
+    pub fn table(&self, Selection { table: name, conditions, columns }: &Selection) -> Result<String, TableError> {
+        let table = self.tables().find(|table| table.name == *name).ok_or_else(|| TableError::NoTable {
+            name: name.clone(),
             known: self.tables().map(|table| table.name.clone()).collect(),
         })?;
-        let conditions: Result<Vec<(usize, &str)>, TableError> =
-            selection.conditions.iter().map(|(name, value)| Ok((place(table, name)?, value.as_str()))).collect();
-        let conditions = conditions?;
-        let columns = columns(table, selection)?;
-        let mut part = Table::new("", "", columns.iter().map(|(_, column)| column.clone()).collect());
-        for row in &table.rows {
-            if conditions.iter().all(|&(place, value)| row[place].text == value) {
-                part.rows.push(columns.iter().map(|(place, _)| row[*place].clone()).collect());
-            }
+        let places: Result<Vec<usize>, TableError> = conditions.iter().map(|(name, _)| place(table, name)).collect();
+        let wanted: Vec<(usize, &str)> =
+            places?.into_iter().zip(conditions.iter().map(|(_, value)| &**value)).collect();
+        let mut columns: Vec<(usize, Column)> =
+            columns.iter().map(|column| titled(table, column)).collect::<Result<_, _>>()?;
+        if columns.is_empty() {
+            columns = table.columns.iter().cloned().enumerate().collect();
         }
+        let rows = table.rows.iter().filter(|row| wanted.iter().all(|&(place, value)| row[place].text == value));
+        let rows = rows.map(|row| columns.iter().map(|(place, _)| row[*place].clone()).collect());
+        let mut part = Table::new("", "", 0);
+        part.rows = rows.collect();
+        part.columns = columns.iter().map(|(_, column)| column.clone()).collect();
         if part.rows.is_empty() {
             let conditions: Vec<String> =
-                selection.conditions.iter().map(|(column, value)| format!("{column}={value}")).collect();
-            return Err(TableError::NoRow { table: table.name.clone(), conditions: conditions.join(", ") });
+                conditions.iter().map(|(column, value)| format!("{column}={value}")).collect();
+            return Err(TableError::NoRow { table: name.clone(), conditions: conditions.join(", ") });
         }
         Ok(markdown::table(&part))
     }
 }
 
-/// The selected columns and their indices.
-fn columns(table: &Table, selection: &Selection) -> Result<Vec<(usize, Column)>, TableError> {
-    if selection.columns.is_empty() {
-        return Ok(table.columns.iter().cloned().enumerate().collect());
-    }
-    let column = |(name, title): &(String, Option<String>)| {
-        let place = place(table, name)?;
-        let column = table.columns[place].clone();
-        Ok((
-            place,
-            match title {
-                Some(title) => Column { title: title.clone(), group: String::new(), ..column },
-                None => column,
-            },
-        ))
+/// A selected column and its index.
+fn titled(table: &Table, (name, title): &(String, Option<String>)) -> Result<(usize, Column), TableError> {
+    let place = place(table, name)?;
+    let column = table.columns[place].clone();
+    let column = match title {
+        Some(title) => Column { title: title.clone(), group: String::new(), ..column },
+        None => column,
     };
-    selection.columns.iter().map(column).collect()
+    Ok((place, column))
 }
 
 fn place(table: &Table, name: &str) -> Result<usize, TableError> {

@@ -3,7 +3,8 @@
 //! Rows of the experiment `rays` have the keys scene, size, `rays` (`primary`, `hard shadow`, `short`), `accel`, device and
 //! threads; values are the number of `rays` and `million_per_second`, by the median. Times are those of the stage that casts
 //! them, including ray generation. Short segments are traced one by one ([`ShortTests::Plain`]), as by a generic ray tracer; the
-//! method's own short tests by cell cast no rays. Brute force is included for tiny scenes, as a measure of the triangle test.
+//! method's own short tests by cell cast no rays. Brute force is included for tiny scenes on the CPU, as a measure of the triangle test:
+//! CUDA devices do not have it.
 
 use lightmesh::render::{Counts, PreparedScene, ShortTests};
 use lightmesh::{Acceleration, Lookup, Mode, Observer, Settings, Stage, Step};
@@ -89,7 +90,9 @@ fn cases<'a>(
 ) -> Vec<Case<'a>> {
     let mut cases = Vec::new();
     for engine in engines {
-        for ((_, side), scene) in structures.iter().zip(prepared) {
+        let has =
+            |acceleration: &Acceleration| *acceleration != Acceleration::BruteForce || engine.thread_count.is_some();
+        for ((_, side), scene) in structures.iter().zip(prepared).filter(|((acceleration, _), _)| has(acceleration)) {
             cases.extend([Mode::RayTrace, Mode::LightMesh].map(|mode| Case { mode, engine, scene, side: *side }));
         }
     }

@@ -11,12 +11,8 @@ use crate::value::{Budget, Smooth};
 
 /// Run a suite of experiments, or compare two runs
 ///
-/// Suites: `thesis` reproduces all tables and figures of the thesis, `quality` measures errors relative to converged area shadows
-/// and the cost of shadow rays with equal error, `rays` measures rays per second for each acceleration structure, `stages` the time
-/// of each stage by acceleration structure, kind of short tests and radius, `antialiasing` time and errors of several samples of a
-/// pixel, `flight` the flicker of a film with gathered light and with soft shadows and what it gains by keeping light, `light` what
-/// cut-outs, mirrors, gathered light and lamps cost, `film` what films gain by keeping what frames have in common. A table is printed; --json saves all rows, for `lightmesh bench compare` and `lightmesh report`. To name a file
-/// `compare`, write ./compare.
+/// A suite prints a table; --json saves all rows, for `lightmesh bench compare` and `lightmesh report`. `lightmesh
+/// bench --list` says what each suite measures. To name a file `compare`, write ./compare.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
 pub(crate) struct BenchArgs {
@@ -37,7 +33,7 @@ pub(crate) enum BenchCommand {
 /// Run a suite.
 #[derive(Debug, Args)]
 pub(crate) struct SuiteArgs {
-    /// thesis, quality, rays or stages
+    /// Run this suite; --list names them
     #[arg(value_name = "SUITE", required_unless_present = "list")]
     pub(crate) suite: Option<Suite>,
 
@@ -49,53 +45,53 @@ pub(crate) struct SuiteArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 
-    /// Also save images next to the JSON, in the folder FILE-pictures (FILE without extension), for reports
+    /// Save images next to the JSON, in the folder FILE-pictures (FILE without extension), for reports
     #[arg(long, requires = "json")]
     pub(crate) pictures: bool,
 
-    /// Write a report on the results: report.md with its plots and images, and the self-contained report.html [default: off]
+    /// Write report.md, its plots and images, and the self-contained report.html to this folder [default: off]
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
 
-    /// A short version: fewer rows and smaller images
+    /// Measure fewer rows and smaller images
     #[arg(long = "quick", id = "short")]
     pub(crate) quick: bool,
 
-    /// Time budget, as in 90s, 15m or 2h: to fit, repetitions are reduced, then rows are dropped, with notes in the results
+    /// Limit the time, as in 90s, 15m or 2h, with fewer repetitions, then fewer rows; notes in the results name them
     /// [default: 15m, or 150s with --quick]
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub(crate) budget: Option<Budget>,
 
-    /// Device: auto (the CPU and, if one works, a GPU), cpu, cuda or cuda:N
+    /// Measure on auto (the CPU and, if one works, a GPU), cpu, cuda or cuda:N
     #[arg(long, value_name = "DEVICE", default_value = "auto")]
     pub(crate) device: Device,
 
-    /// CPU threads [default: all]
+    /// Use N CPU threads [default: all]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub(crate) threads: Option<u32>,
 
-    /// Scene to measure, for suites that accept any; repeatable [default: the suite's own]
+    /// Measure this scene, in suites that accept any; repeatable [default: the suite's own]
     #[arg(long = "scene", id = "scenes", value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
-    /// Crease angle of OBJ, PLY and STL files without normals, in degrees, or off, as for `lightmesh render`
+    /// Smooth edges below this crease angle in OBJ, PLY and STL files without normals; off shows facets
     #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t = Smooth::OFF)]
     pub(crate) smooth: Smooth,
 
-    /// Pixels along a side, for suites that accept any [default: the suite's own]
+    /// Set the pixels along a side, in suites that accept any [default: the suite's own]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) size: Option<u32>,
 
-    /// Frames of the film of the suite flight [default: 240, or 24 with --quick]
+    /// Render N frames in the suite flight [default: 240, or 24 with --quick]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub(crate) frames: Option<u32>,
 
-    /// Counted repetitions of each image; fewer if the budget is short
+    /// Count N repetitions of each image; fewer if the budget is short
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = Plan::REPETITIONS as u32,
         value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) repeat: u32,
 
-    /// How to show progress on stderr
+    /// Show progress on stderr
     #[arg(long, value_enum, default_value_t = Progress::Auto)]
     pub(crate) progress: Progress,
 
@@ -106,15 +102,16 @@ pub(crate) struct SuiteArgs {
 
 /// Compare two runs of a suite
 ///
-/// Rows are matched by id. For each stage present in both runs, the ratio of the medians is compared with a noise band derived
-/// from the repetitions of both. A row is judged by its stage `render`, or by all stages if it has none or the suite is `stages`.
+/// Rows are matched by id. For each stage that both runs have, the ratio of the medians is compared with a noise band
+/// derived from the repetitions of both. A row is judged by its stage `render`, or by all stages if it has no such
+/// stage or the suite is `stages`.
 #[derive(Debug, Args)]
 pub(crate) struct BenchCompareArgs {
-    /// The earlier run
+    /// Read the earlier run
     #[arg(value_name = "OLD.json")]
     pub(crate) old: PathBuf,
 
-    /// The later run
+    /// Read the later run
     #[arg(value_name = "NEW.json")]
     pub(crate) new: PathBuf,
 

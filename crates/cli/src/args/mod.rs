@@ -25,7 +25,7 @@ pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 
-    /// When messages have colours
+    /// Colour messages
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = When::Auto)]
     pub(crate) color: When,
 }
@@ -38,10 +38,26 @@ fn version() -> String {
 
 /// The command line with a variable for each flag of `render`: LIGHTMESH_MEMORY_LIMIT for `--memory-limit`.
 pub(crate) fn command() -> clap::Command {
-    Cli::command().mut_subcommands(|subcommand| match subcommand.get_name() {
+    with_defaults(Cli::command()).mut_subcommands(|subcommand| match subcommand.get_name() {
         "render" => subcommand.mut_args(with_variable),
         _ => subcommand,
     })
+}
+
+/// The command whose help texts end with the defaults of their flags. The parser would put each into a paragraph of its own.
+fn with_defaults(command: clap::Command) -> clap::Command {
+    command.mut_args(with_default).mut_subcommands(with_defaults)
+}
+
+fn with_default(flag: Arg) -> Arg {
+    let values: Vec<_> = flag.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
+    match flag.get_help() {
+        Some(help) if !values.is_empty() => {
+            let help = format!("{help} [default: {}]", values.join(" "));
+            flag.hide_default_value(true).help(help)
+        }
+        _ => flag,
+    }
 }
 
 fn with_variable(flag: Arg) -> Arg {
@@ -55,19 +71,28 @@ fn with_variable(flag: Arg) -> Arg {
 const NOT_FROM_VARIABLES: [&str; 5] = ["HELP", "OUTPUT", "LIGHT", "QUIET", "VERBOSE"];
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 success, 1 a comparison exceeded its threshold, 2 bad input or usage, 3 device unusable or memory \
-insufficient, 4 a film failed after some of its frames (--resume goes on), 130 interrupted (143 by SIGTERM, 129 by SIGHUP).
+Exit codes:
+  0    success
+  1    a comparison exceeded its threshold
+  2    bad input or usage
+  3    device unusable or memory insufficient
+  4    a film failed after some of its frames; --resume continues it
+  130  interrupted (143 by SIGTERM, 129 by SIGHUP)
 
-Environment: each flag of `lightmesh render` except -o, --light, -q and -v can be set by a variable, LIGHTMESH_DEVICE for \
---device or LIGHTMESH_MEMORY_LIMIT for --memory-limit; the flag wins. LIGHTMESH_FFMPEG names the program that encodes movies. CUDA_VISIBLE_DEVICES hides GPUs. NO_COLOR, \
-CLICOLOR_FORCE and CLICOLOR=0 decide about colours, unless --color does.
+Environment (flags win over variables):
+  LIGHTMESH_DEVICE      sets --device of `lightmesh render`
+  LIGHTMESH_GRID_FILE   sets --grid-file, and so on for its flags
+                        except -o, --light, -q and -v
+  LIGHTMESH_FFMPEG      names the program that encodes movies
+  CUDA_VISIBLE_DEVICES  hides and renumbers GPUs
+  NO_COLOR, CLICOLOR_FORCE, CLICOLOR=0 decide about colours
 
 Examples:
   lightmesh render builtin:childpark -o park.png
   lightmesh render house.glb -o house.png --size 1920x1080 --quality final
   lightmesh render room.toml -o room.exr --layers layers.exr --device cpu -v
   lightmesh render room.toml -o room.png --quality final --partial
-  lightmesh export room.toml -o - | lightmesh render - --scene-format glb -o - --format png > room.png
+  lightmesh export room.toml -o - | lightmesh render - --scene-format glb -o room.png
   lightmesh render crystal.stl -o crystal.png --smooth off
   lightmesh compare before.png after.png --max-flip 0.01";
 
@@ -99,8 +124,8 @@ pub(crate) enum Command {
 /// Where a scene comes from.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct SceneArg {
-    /// A .toml, .obj, .gltf, .glb, .ply or .stl file, or builtin:gazebo, builtin:childpark, builtin:garden (also with options, as
-    /// in builtin:garden?lights=3), or `-`: standard input, which needs --scene-format
+    /// Open a .toml, .obj, .gltf, .glb, .ply or .stl file, builtin:gazebo, builtin:childpark, builtin:garden, or `-`
+    /// (standard input, with --scene-format)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
@@ -125,8 +150,7 @@ impl ReadingArgs {
 /// How a scene is read.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct ReadingArgs {
-    /// Format of the scene [default: by the extension]. Files to which a scene on standard input refers are looked for
-    /// in the current folder
+    /// Read the scene in this format [default: by the extension]
     #[arg(long, value_parser = words::scene_format(), help_heading = "Reading")]
     pub(crate) scene_format: Option<SceneFormat>,
 
@@ -138,9 +162,8 @@ pub(crate) struct ReadingArgs {
     #[arg(long, help_heading = "Reading")]
     pub(crate) strict: bool,
 
-    /// Most memory to use, on the host and on a device each; work is split to fit, and what cannot be split is refused (exit code 3). In
-    /// bytes, or with a unit: K, M, G, T (or KiB, …) are powers of 1024, kB, MB, GB, TB powers of 1000. A CUDA driver's own memory on the
-    /// host is not counted [default: free memory minus a reserve]
+    /// Use at most this much memory, as in 512M, on host and device each; if work cannot be split to fit, the exit code
+    /// is 3 [default: free memory minus a reserve]
     #[arg(long, value_name = "SIZE", help_heading = "Machine")]
     pub(crate) memory_limit: Option<ByteSize>,
 }
@@ -161,18 +184,18 @@ impl Command {
 /// Describe a scene, or list devices
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// The scene to describe; `-` is standard input, which needs --scene-format
+    /// Describe this scene; `-` is standard input, with --scene-format
     #[arg(value_name = "SCENE", required_unless_present = "devices", conflicts_with = "devices")]
     pub(crate) scene: Option<PathBuf>,
 
     #[command(flatten)]
     pub(crate) reading: ReadingArgs,
 
-    /// Crease angle of OBJ, PLY and STL files without normals, in degrees, or off, as for `lightmesh render`
+    /// Smooth edges below this crease angle in OBJ, PLY and STL files without normals; off shows facets
     #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t, help_heading = "Reading")]
     pub(crate) smooth: Smooth,
 
-    /// Whether meshes in many places are stored once, as for `lightmesh render`
+    /// Store meshes in many places once
     #[arg(long, value_name = "WHEN", value_parser = words::instances(), default_value_t = Instancing::Auto, help_heading = "Reading")]
     pub(crate) instances: Instancing,
 
@@ -180,34 +203,34 @@ pub(crate) struct InfoArgs {
     #[arg(long)]
     pub(crate) devices: bool,
 
-    /// Print JSON: world coordinates, degrees
+    /// Print JSON, in world coordinates and degrees
     #[arg(long)]
     pub(crate) json: bool,
 }
 
 /// Compare two images
 ///
-/// RMSE, PSNR and the maximum difference are computed on display values in [0, 1]; FLIP predicts the difference that a viewer
-/// perceives when flipping between the images. The exit code is 1 if a threshold is exceeded.
+/// RMSE, PSNR and the maximum difference compare display values in [0, 1]. FLIP predicts the difference that a viewer
+/// sees when flipping between the images. The exit code is 1 if a measure exceeds its threshold.
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
-    /// Reference image: bmp, png, exr or jpg
+    /// Compare with this reference: bmp, png, exr or jpg
     #[arg(value_name = "A")]
     pub(crate) reference: PathBuf,
 
-    /// Image to compare with the reference
+    /// Compare this image
     #[arg(value_name = "B")]
     pub(crate) test: PathBuf,
 
-    /// Save the FLIP error of each pixel as an image, from black (equal) to yellow (maximum error)
+    /// Save the FLIP error of each pixel as an image, from black (equal) to yellow (maximum error) [default: off]
     #[arg(long, value_name = "D.png")]
     pub(crate) diff: Option<PathBuf>,
 
-    /// Maximum mean FLIP error
+    /// Fail if the mean FLIP error exceeds X [default: none]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) max_flip: Option<Bound>,
 
-    /// Maximum RMSE
+    /// Fail if the RMSE exceeds X [default: none]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) max_rmse: Option<Bound>,
 
@@ -218,22 +241,22 @@ pub(crate) struct CompareArgs {
 
 /// Build the acceleration grid of a scene and save it
 ///
-/// `lightmesh render SCENE --grid-file FILE` loads it instead of building one. The file is only valid for the geometry from which
-/// it was built, and rejected for any other.
+/// `lightmesh render SCENE --grid-file FILE` loads the grid instead of building one. The file is valid only for the
+/// geometry that it was built from; other scenes are refused.
 #[derive(Debug, Args)]
 pub(crate) struct GridArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// Output file
+    /// Write the grid to this file
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 
-    /// Cells along each axis [default: from the number of triangles]
+    /// Set the cells along each axis [default: from the number of triangles]
     #[arg(long, value_name = "NXxNYxNZ")]
     pub(crate) grid: Option<Dims>,
 
-    /// 1: a single grid; 2: cells with many triangles contain a nested grid
+    /// Build 1 level, or 2: cells with many triangles contain a nested grid
     #[arg(long, value_name = "1|2", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
     pub(crate) levels: u8,
 
@@ -248,12 +271,13 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArg,
 
-    /// NAME.glb: everything in one file; NAME.toml: cameras and lights as text, and the triangles in NAME.mesh.glb;
-    /// `-`: GLB on standard output
+    /// Write NAME.glb, all in one file, or NAME.toml, cameras and lights as text with the triangles in NAME.mesh.glb; `-`
+    /// is GLB on standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 
-    /// Crease angle of OBJ, PLY and STL files without normals, in degrees: the normals that they get are exported. off exports facets
+    /// Smooth edges below this crease angle in OBJ, PLY and STL files without normals, and export the normals; off
+    /// exports facets
     #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t, help_heading = "Reading")]
     pub(crate) smooth: Smooth,
 
@@ -264,15 +288,15 @@ pub(crate) struct ExportArgs {
 
 /// Write a report on benchmark results, as Markdown and HTML
 ///
-/// Both contain tables, plots, images compared with their references, and the machine, driver, commit and command of each run.
-/// Several files are shown side by side, with ratios to the first file for rows with the same id.
+/// Both contain tables, plots, images compared with their references, and the machine, driver, commit and command of
+/// each run. The report shows several files side by side, with ratios to the first file for rows with the same id.
 #[derive(Debug, Args)]
 pub(crate) struct ReportArgs {
-    /// Results of `lightmesh bench SUITE --json FILE`; the file name is used as the name of the run
+    /// Read results of `lightmesh bench SUITE --json FILE`; the file name names the run
     #[arg(value_name = "BENCH.json", required = true)]
     pub(crate) results: Vec<PathBuf>,
 
-    /// Output folder for report.md with its plots and images, and for the self-contained report.html; created if missing
+    /// Write report.md, its plots and images, and the self-contained report.html to this folder; created if missing
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
 
@@ -284,7 +308,7 @@ pub(crate) struct ReportArgs {
 /// Print a shell completion script
 #[derive(Debug, Args)]
 pub(crate) struct CompletionsArgs {
-    /// The shell
+    /// Print the script for this shell
     #[arg(value_name = "SHELL")]
     pub(crate) shell: clap_complete::Shell,
 }
@@ -292,18 +316,24 @@ pub(crate) struct CompletionsArgs {
 /// Print the manual page
 #[derive(Debug, Args)]
 pub(crate) struct ManArgs {
-    /// The page of a subcommand instead of the general one
+    /// Print the page of this subcommand [default: the general page]
     #[arg(value_name = "COMMAND", conflicts_with = "output")]
     pub(crate) page: Option<String>,
 
-    /// Write all pages to a directory
+    /// Write all pages to this folder [default: print one]
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }
 
 #[cfg(test)]
 mod tests {
+    use clap::builder::PossibleValue;
+
     use super::*;
+
+    /// Lines that the help of a flag has at most, its own included.
+    const MOST_LINES: usize = 3;
+    const COLUMNS: usize = 100;
 
     #[test]
     fn the_definition_is_consistent() {
@@ -317,5 +347,89 @@ mod tests {
         let variable = |id: &str| render.get_arguments().find(|flag| flag.get_id() == id).unwrap().get_env();
         assert_eq!(variable("memory_limit"), Some("LIGHTMESH_MEMORY_LIMIT".as_ref()));
         assert_eq!((variable("device"), variable("output")), (Some("LIGHTMESH_DEVICE".as_ref()), None));
+    }
+
+    /// Each flag and positional of a help text, with the number of its lines without those of possible values; and the values that have more
+    /// than one line.
+    fn flags_and_lines(help: &str) -> (Vec<(&str, usize)>, Vec<&str>) {
+        let (mut flags, mut values) = (Vec::<(&str, usize)>::new(), Vec::new());
+        let (mut in_flag, mut value) = (false, None);
+        for line in help.lines() {
+            let text = line.trim_start();
+            let indent = line.len() - text.len();
+            if text.is_empty() {
+                continue;
+            }
+            if indent == 0 {
+                (in_flag, value) = (false, None);
+            } else if indent <= 6 && text.starts_with(['-', '<', '[']) {
+                flags.push((text, 1));
+                (in_flag, value) = (true, None);
+            } else if text == "Possible values:" {
+                (in_flag, value) = (false, Some(text));
+            } else if value.is_some() && text.starts_with("- ") {
+                value = Some(text);
+            } else if let Some(value) = value {
+                values.push(value);
+            } else if in_flag && let Some((_, lines)) = flags.last_mut() {
+                *lines += 1;
+            }
+        }
+        (flags, values)
+    }
+
+    /// All commands that have no commands of their own, and `bench`, with their full names.
+    fn commands(command: &clap::Command, name: &str) -> Vec<(String, clap::Command)> {
+        let mut all = vec![(name.to_owned(), command.clone())];
+        for subcommand in command.get_subcommands().filter(|subcommand| subcommand.get_name() != "help") {
+            all.extend(commands(subcommand, &format!("{name} {}", subcommand.get_name())));
+        }
+        all
+    }
+
+    #[test]
+    fn help_on_a_flag_is_short() {
+        let mut lightmesh = command().term_width(COLUMNS);
+        lightmesh.build();
+        let mut count = 0;
+        for (name, mut command) in commands(&lightmesh, "lightmesh") {
+            for help in [command.render_long_help().to_string(), command.render_help().to_string()] {
+                let (flags, values) = flags_and_lines(&help);
+                let long: Vec<_> = flags.iter().filter(|(_, lines)| *lines > MOST_LINES).collect();
+                assert!(long.is_empty() && values.is_empty(), "{name}: {long:?} {values:?}\n{help}");
+                count += flags.len();
+            }
+        }
+        assert!(count > 200, "{count} flags are too few to be all");
+    }
+
+    #[test]
+    fn a_long_help_is_noticed() {
+        let values = || [PossibleValue::new("a").help("b ".repeat(60)), PossibleValue::new("c")];
+        let flag = |name: &'static str, help: String| Arg::new(name).long(name).help(help);
+        let mut odd = clap::Command::new("odd")
+            .term_width(COLUMNS)
+            .arg(flag("long", "word ".repeat(60)).long_help(format!("{}\n\nmore", "word ".repeat(36))))
+            .arg(flag("short", "word ".repeat(36)).value_parser(values()));
+        let lines = |help: String| {
+            let (flags, values) = flags_and_lines(&help);
+            (flags.iter().map(|(_, lines)| *lines).collect::<Vec<_>>(), values.len())
+        };
+        assert_eq!(lines(odd.render_long_help().to_string()), (vec![4, 3, 2], 1));
+        assert!(lines(odd.render_help().to_string()).0[0] > MOST_LINES);
+    }
+
+    #[test]
+    fn flags_with_a_value_say_what_it_is_without_them() {
+        let mut lightmesh = command();
+        lightmesh.build();
+        for (name, command) in commands(&lightmesh, "lightmesh") {
+            for flag in command.get_opts().filter(|flag| !flag.is_required_set()) {
+                let (long, help) = (flag.get_long(), flag.get_help().map(ToString::to_string).unwrap_or_default());
+                // An image is needed, but for the hours of direct sun.
+                let is_needed = name == "lightmesh render" && long == Some("output");
+                assert_eq!(help.matches("[default: ").count(), usize::from(!is_needed), "{name} {long:?}: {help}");
+            }
+        }
     }
 }

@@ -93,7 +93,7 @@ pub(super) fn exr_parts() -> impl TypedValueParser<Value = ExrParts> {
 
 pub(super) fn bit_depth() -> impl TypedValueParser<Value = BitDepth> {
     PossibleValuesParser::new([
-        PossibleValue::new("8").help("256 codes: what screens show"),
+        PossibleValue::new("8").help("256 codes, as screens show"),
         PossibleValue::new("16").help("65536 codes, for further grading"),
     ])
     .map(|bits| if bits == "16" { BitDepth::Sixteen } else { BitDepth::Eight })
@@ -102,16 +102,14 @@ pub(super) fn bit_depth() -> impl TypedValueParser<Value = BitDepth> {
 /// Something that is on or off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Switch {
-    /// Do it
     On,
-    /// Leave it
     Off,
 }
 
 /// The up axis.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Up {
-    /// By file format: z for STL, else y; for a camera that is added to OBJ, PLY and STL also by what the model stands on
+    /// z for STL, y for others; for OBJ, PLY and STL without a camera, by the shape
     Auto,
     /// glTF, most OBJ
     Y,
@@ -135,7 +133,7 @@ impl Up {
 pub(crate) enum Progress {
     /// A bar on a terminal, elsewhere a line every ten seconds; nothing with --quiet
     Auto,
-    /// The same, also with --quiet
+    /// As auto, also with --quiet
     Bar,
     /// One JSON object per line
     Json,

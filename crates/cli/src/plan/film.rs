@@ -1,4 +1,4 @@
-//! The frames of a film.
+//! The plan of a film: what moves, and which frames are wanted.
 
 use std::collections::VecDeque;
 

@@ -40,7 +40,7 @@ pub(crate) enum PlanError {
     #[error(transparent)]
     Movie(#[from] MovieChoiceError),
     /// The part of the image is not in it.
-    #[error("--crop {crop} is not a part of an image of {}x{} pixels; choose pixels of it (--crop, --size)", size[0], size[1])]
+    #[error("--crop {crop} exceeds the image of {}x{} pixels; choose a part of the image (--crop, --size)", size[0], size[1])]
     Crop {
         /// The part.
         crop: Crop,
@@ -51,7 +51,7 @@ pub(crate) enum PlanError {
     #[error("-o - needs the format of the image; add --format bmp, png, exr or jpg")]
     NoFormat,
     /// A mesh file that is no file.
-    #[error("--mesh-file - is both read and written, which standard output cannot be; name a file")]
+    #[error("--mesh-file - cannot be standard output, since the file is read and written; name a file")]
     MeshOnStdout,
     /// A file of a film whose name has no place for the number of the frame.
     #[error("{flag} {} is one file, but a film has one for each frame; write #### where the number goes, as in film.####.png", path.display())]

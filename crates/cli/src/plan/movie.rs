@@ -31,7 +31,7 @@ pub(crate) enum MovieChoiceError {
         path: PathBuf,
     },
     /// The format is that of an image.
-    #[error("-o {} is a movie, but --format is that of an image; leave it out, or write frames, as in -o film.####.png", path.display())]
+    #[error("-o {} is a movie, but --format names an image format; leave it out, or write frames, as in -o film.####.png", path.display())]
     Format {
         /// The movie.
         path: PathBuf,

@@ -14,13 +14,13 @@ use super::SunStudy;
 use crate::args::{self, ImageArgs};
 use crate::value::{Background, Color, EnvironmentSpec, LightSpec, SkySpec};
 
-/// Why a scene cannot be had as typed.
+/// Invalid scene options.
 #[derive(Debug, thiserror::Error)]
 pub enum ChoiceError {
     /// There is no camera of this name.
     #[error(transparent)]
     Camera(#[from] UnknownCamera),
-    /// The sky is none.
+    /// Invalid sky.
     #[error("--sky: {0}")]
     Sky(#[from] SkyError),
     /// The panorama cannot be used.
@@ -109,7 +109,7 @@ impl SceneChoices {
         if added.camera {
             let from = match added.viewpoint {
                 Viewpoint::OpenSide => "looks into it through its open side",
-                Viewpoint::Inside => "stands inside, since from outside hardly more than walls would be seen",
+                Viewpoint::Inside => "stands inside, since the outside shows little but walls",
                 _ => "frames it from the front",
             };
             observer.note(&format!(
@@ -119,8 +119,8 @@ impl SceneChoices {
         }
         if added.lights {
             observer.note(if added.lights_inside {
-                "the scene has no lights, and those outside would not reach what the camera sees: using a key light in the space \
-                 ahead, a weaker fill light above the camera and more ambient light (--light replaces them, --ambient sets that)"
+                "the scene has no lights, and lights outside would not reach the visible surfaces: using a key light ahead of the \
+                 camera, a weaker fill light above it and more ambient light (--light replaces the lights, --ambient the ambient light)"
             } else {
                 "the scene has no lights: using a key light above the camera and a weaker fill light on the other side \
                  (--light replaces them)"

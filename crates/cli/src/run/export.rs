@@ -28,7 +28,7 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
         made => format!(", {made} smooth normals"),
     };
     if scene.animation().is_some() {
-        watcher.warning("animations are not exported: the scene is written as it is without them");
+        watcher.warning("animations are not exported: the scene is written at rest");
     }
     if let Some(environment) = &scene.lights.environment {
         watcher.warning(&format!("{}: skies and panoramas are not exported, only the sun in them", environment.name));

@@ -297,7 +297,7 @@ pub(super) fn explain(scene: &Scene, is_film: bool, watcher: &Watcher) {
     let seconds = animation.duration();
     if !is_film {
         watcher.note(&format!(
-            "the scene moves for {seconds:.2} s; this is how it is without (--fps 24 renders the film, --frames a part of it)"
+            "the scene moves for {seconds:.2} s; this image shows it at rest (--fps 24 renders the film, --frames a part of it)"
         ));
     } else if !animation.others().is_empty() {
         let quoted = |names: &[String]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
@@ -323,10 +323,10 @@ fn summary(work: &Work, elapsed: Duration, studio: &Studio) -> String {
     let (count, seconds) = (work.numbers.len(), elapsed.as_secs_f64());
     let skipped = match work.skipped {
         0 => String::new(),
-        skipped => format!(", {skipped} left as they were"),
+        skipped => format!(", {skipped} kept"),
     };
     if count == 0 {
-        return format!("no frame is missing: {} left as they were", work.skipped);
+        return format!("no frame is missing: {} kept", work.skipped);
     }
     let frames = if count == 1 { "frame" } else { "frames" };
     format!(

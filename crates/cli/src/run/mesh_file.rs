@@ -31,7 +31,7 @@ impl<'a> Mesh<'a> {
         let gathers = plan.settings.ambient_light.for_scene(&prepared.scene) == AmbientSource::Mesh;
         if !(has_light_points(&plan.settings) || gathers) || moves {
             let why = if moves {
-                "surfaces move in this film, and a mesh belongs to one place of them"
+                "surfaces move in this film, and each frame would need a file of its own"
             } else {
                 "only --lookup half-ball has light points, and only --ambient-light mesh keeps gathered light"
             };
@@ -46,7 +46,7 @@ impl<'a> Mesh<'a> {
         match memory::during(format!("reading {}", path.display()), load) {
             Ok(cache) => {
                 let what = amount(cache.len(), cache.sites_read());
-                watcher.note(&format!("{}: {what} were read", path.display()));
+                watcher.note(&format!("{}: read {what}", path.display()));
                 mesh.cache = cache;
             }
             Err(error) if error.fault.is_replaceable() => refused(&error, watcher),
@@ -73,7 +73,7 @@ impl<'a> Mesh<'a> {
         let saved = memory::during(format!("writing {}", path.display()), || self.cache.save(path, prepared))?;
         if let Some(SavedMesh { values, sites, bytes, .. }) = saved {
             let (path, what, bytes) = (path.display(), amount(values, sites), Bytes(bytes));
-            watcher.note(&format!("{path}: {what} were written, {bytes}"));
+            watcher.note(&format!("{path}: wrote {what}, {bytes}"));
         }
         Ok(())
     }

@@ -41,7 +41,7 @@ const COLOURS: [&str; 10] =
 pub(crate) enum MovieError {
     /// There is no such program.
     #[error(
-        "{} needs {program} to encode it, which cannot be started ({reason}); install ffmpeg, name it by {VARIABLE}, or write frames, as \
+        "{} needs {program} to encode it, but {program} does not start ({reason}); install ffmpeg, name it by {VARIABLE}, or write frames, as \
          in -o film.####.png", path.display()
     )]
     NoProgram {
@@ -54,7 +54,7 @@ pub(crate) enum MovieError {
     },
     /// It lacks the encoder.
     #[error(
-        "{} needs the encoder {encoder}, which {program} does not have; install an ffmpeg with it, name that by {VARIABLE}, or write \
+        "{} needs the encoder {encoder}, but {program} lacks it; install an ffmpeg with it, name that by {VARIABLE}, or write \
          frames, as in -o film.####.png", path.display()
     )]
     NoEncoder {
@@ -88,7 +88,7 @@ pub(crate) enum MovieError {
         reason: io::Error,
     },
     /// The movie is a pipe or a device.
-    #[error("cannot write {}: a movie needs a file, in which ffmpeg can go back; name one", path.display())]
+    #[error("cannot write {}: ffmpeg must be able to seek in a movie; name a regular file", path.display())]
     NoFile {
         /// The movie.
         path: PathBuf,
@@ -143,7 +143,8 @@ impl Movie {
         let even = [width, height].map(|side| side.next_multiple_of(2));
         if even != [width, height] {
             let [wide, high] = even;
-            watcher.note(&format!("a movie has even sides: {wide}x{high} pixels, with the last ones repeated"));
+            watcher
+                .note(&format!("a movie needs even sides: {wide}x{high} pixels, by repeating the last row or column"));
         }
         let mut command = Command::new(&program);
         command.args(input(display.bit_depth, even, args)).args(COLOURS).args(encoding(container)).arg(file);

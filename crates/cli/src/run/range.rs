@@ -38,7 +38,7 @@ pub(super) fn warnings(frame: &Frame, display: &Display, has_ground: bool) -> Ve
     let mut warnings = Vec::new();
     if white > MANY {
         let text = format!(
-            "{:.0} % of what is seen of the scene is clipped to white: lower the exposure (--exposure auto, or a number of stops \
+            "{:.0} % of the visible scene is clipped to white: lower the exposure (--exposure auto, or a number of stops \
              below {}), or compress highlights (--view neutral)",
             100.0 * white,
             display.exposure
@@ -49,7 +49,7 @@ pub(super) fn warnings(frame: &Frame, display: &Display, has_ground: bool) -> Ve
     let has_shadows = frame.image.alpha().is_some() && has_ground;
     if black > MANY && !has_shadows {
         let text = format!(
-            "{:.0} % of what is seen of the scene is black: add light (--light, --ambient), or raise the exposure (--exposure auto, \
+            "{:.0} % of the visible scene is black: add light (--light, --ambient), or raise the exposure (--exposure auto, \
              or a number of stops above {})",
             100.0 * black,
             display.exposure

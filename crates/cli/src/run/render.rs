@@ -39,7 +39,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     if let Some(crease) = plan.smooth.filter(|_| args.verbose) {
         let (made, degrees) = (scene.smooth_normals, crease.degrees());
-        watcher.note(&format!("smooth {degrees}: {made} normals were made (--smooth off makes none)"));
+        watcher.note(&format!("smooth {degrees}: made {made} normals (--smooth off shows facets)"));
     }
 
     if let Some(file) = plan.choices.file() {

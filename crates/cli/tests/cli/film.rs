@@ -226,10 +226,10 @@ fn frames_that_exist_are_kept_or_replaced_as_the_user_says() {
     assert!(message.contains("f.2.png exists; add --skip-existing"), "{message}");
     assert!(!place.path("f.1.png").exists());
     let done = place.good(&[&film[..], &["--skip-existing"]].concat());
-    assert!(done.stderr.contains("balls: 2 frames, 1 left as they were: "), "{done:?}");
+    assert!(done.stderr.contains("balls: 2 frames, 1 kept: "), "{done:?}");
     assert_eq!(place.read("f.2.png"), b"mine");
     let done = place.good(&[&film[..], &["--skip-existing"]].concat());
-    assert!(done.stderr.contains("no frame is missing: 3 left as they were"), "{done:?}");
+    assert!(done.stderr.contains("no frame is missing: 3 kept"), "{done:?}");
     place.good(&[&film[..], &["--overwrite", "--frames", "2"]].concat());
     assert_ne!(place.read("f.2.png"), b"mine");
 }

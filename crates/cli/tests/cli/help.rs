@@ -73,7 +73,7 @@ fn help_and_manual_know_every_flag() {
         assert!(known(&help), "{flag} in {help}");
         assert!(known(&manual), "{flag} in {manual}");
     }
-    for default in ["light-mesh", "1024x1024", "auto", "smooth", "225 / 4", "2.1", "srgb"] {
+    for default in ["light-mesh", "1024x1024", "auto", "smooth", "area 225, half-ball 4", "2.1", "srgb"] {
         let stated = help.lines().any(|line| line.contains("default: ") && line.contains(default));
         assert!(stated, "default {default} in {help}");
     }

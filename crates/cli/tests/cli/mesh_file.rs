@@ -31,11 +31,14 @@ fn a_second_run_tests_nothing() {
         let place = Place::new();
         let (first, [made, saved]) = same(&place, lights);
         assert!(made > 1000 && saved == 0, "{made} {saved}");
-        assert!(first.stderr.contains("room.mesh: ") && first.stderr.contains(" were written"), "{first:?}");
+        assert!(first.stderr.contains("room.mesh: wrote "), "{first:?}");
         let written = place.read("room.mesh");
         let (again, counts) = same(&place, lights);
         assert_eq!(counts, [0, made]);
-        assert!(again.stderr.contains("values of light points were read"), "{again:?}");
+        assert!(
+            again.stderr.contains("room.mesh: read ") && again.stderr.contains(" values of light points\n"),
+            "{again:?}"
+        );
         assert!(place.read("room.mesh") == written, "what is known is the same");
         // Another camera finds some of it, and adds what it lacks.
         let aside = [lights, &["--camera", "0.5,2,6;0,1,0;45"]].concat();
@@ -93,6 +96,12 @@ fn a_stale_or_damaged_file_is_replaced_with_a_warning() {
         assert!(replaced(&place, &lamp).contains(fault), "byte {at}");
         assert!(place.read("room.mesh") == whole, "byte {at}");
     }
+    // Version 2, whose content is compressed by Zstandard.
+    let older =
+        [&whole[..8], &2u32.to_le_bytes(), &whole[12..24], &[0x28, 0xb5, 0x2f, 0xfd, 0, 0x48, 1, 0, 0]].concat();
+    std::fs::write(place.path("room.mesh"), older).unwrap();
+    assert!(replaced(&place, &lamp).contains("has format version 2, this program reads version 3"));
+    assert!(place.read("room.mesh") == whole);
     for length in [8, 30, whole.len() / 2, whole.len() - 1] {
         std::fs::write(place.path("room.mesh"), &whole[..length]).unwrap();
         assert!(replaced(&place, &lamp).contains("damaged"), "{length} bytes");
@@ -117,9 +126,17 @@ fn gathered_light_is_kept_from_run_to_run() {
         (done, [rays("with.json"), rays("without.json")])
     };
     let (first, [made, all]) = render(&["clear"]);
-    assert!(made == all && first.stderr.contains(" sites of gathered light were written"), "{first:?}");
+    assert!(
+        made == all
+            && first.stderr.contains("room.mesh: wrote ")
+            && first.stderr.contains(" sites of gathered light, "),
+        "{first:?}"
+    );
     let (again, [made, all]) = render(&["clear"]);
-    assert!(again.stderr.contains(" sites of gathered light were read"), "{again:?}");
+    assert!(
+        again.stderr.contains("room.mesh: read ") && again.stderr.contains(" sites of gathered light\n"),
+        "{again:?}"
+    );
     assert!(4 * made < all && !again.stderr.contains("warning"), "{made} of {all}: {again:?}");
     let (other, [made, all]) = render(&["uniform"]);
     let warning = "room.mesh: has light gathered from other lights, surroundings or materials";

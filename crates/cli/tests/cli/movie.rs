@@ -72,7 +72,7 @@ fn sides_are_even_and_bits_are_kept() {
     let place = place();
     let flags = ["-o", "a.webm", "--size", "15x11", "--bit-depth", "16", "--frames", "2-3"];
     let done = run(&place, &[], &flags);
-    assert!(done.code == Some(0) && done.stderr.contains("a movie has even sides: 16x12 pixels"), "{done:?}");
+    assert!(done.code == Some(0) && done.stderr.contains("a movie needs even sides: 16x12 pixels"), "{done:?}");
     let arguments = arguments(&place);
     assert!(arguments.contains("-pixel_format rgb48be -video_size 16x12 -framerate 24 "), "{arguments}");
     assert!(arguments.contains("-c:v libvpx-vp9 ") && arguments.contains(" -f webm "), "{arguments}");
@@ -92,17 +92,17 @@ fn what_cannot_be_encoded_is_refused_before_the_work() {
         done.stderr.lines().find(|line| line.starts_with("error: ")).unwrap().to_owned()
     };
     let none = refused(&[("LIGHTMESH_FFMPEG", "./none")], &["-o", "a.mp4"]);
-    assert!(none.contains("a.mp4 needs ./none to encode it, which cannot be started ("), "{none}");
+    assert!(none.contains("a.mp4 needs ./none to encode it, but ./none does not start ("), "{none}");
     assert!(none.contains("; install ffmpeg, name it by LIGHTMESH_FFMPEG, or write frames"), "{none}");
     let lacking = refused(&[("NO_VP9", "1")], &["-o", "a.webm"]);
-    assert!(lacking.contains("a.webm needs the encoder libvpx-vp9, which ./ffmpeg.sh does not have"), "{lacking}");
+    assert!(lacking.contains("a.webm needs the encoder libvpx-vp9, but ./ffmpeg.sh lacks it"), "{lacking}");
     for flag in ["--resume", "--skip-existing"] {
         let kept = refused(&[], &["-o", "a.mp4", flag]);
         assert!(kept.contains(&format!("{flag} keeps frames, but -o a.mp4 is one file")), "{kept}");
         assert!(kept.contains("write frames, as in -o film.####.png, and join them with ffmpeg"), "{kept}");
     }
     assert!(refused(&[], &["-o", "a.mp4", "--background", "transparent"]).contains("movies have no alpha"));
-    assert!(refused(&[], &["-o", "a.mp4", "--format", "png"]).contains("--format is that of an image"));
+    assert!(refused(&[], &["-o", "a.mp4", "--format", "png"]).contains("--format names an image format"));
     assert!(
         refused(&[], &["-o", "a.mp4", "--stats", "a.json"]).contains("--stats a.json is one file, but a film has one")
     );

@@ -115,13 +115,13 @@ fn only_frames_that_are_as_recorded_are_kept() {
     std::fs::write(place.path("f.06.png"), "").unwrap();
     let resume: Vec<&str> = film(&["--resume"]).into_iter().filter(|&flag| flag != "--quiet").collect();
     let done = place.good(&resume);
-    assert!(done.stderr.contains("room: 7 frames, 5 left as they were: "), "{done:?}");
+    assert!(done.stderr.contains("room: 7 frames, 5 kept: "), "{done:?}");
 
     let whole = Place::new();
     whole.good(&film(&[]));
     assert_same(&place, &bytes(&whole));
     let again = place.good(&resume);
-    assert!(again.stderr.contains("no frame is missing: 12 left as they were"), "{again:?}");
+    assert!(again.stderr.contains("no frame is missing: 12 kept"), "{again:?}");
 }
 
 #[test]

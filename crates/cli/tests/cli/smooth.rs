@@ -67,7 +67,7 @@ fn a_variable_turns_it_off_and_verbose_runs_count() {
         assert!(done.status.success(), "{done:?}");
         String::from_utf8(done.stderr).unwrap()
     };
-    let note = "smooth 30: 48 normals were made (--smooth off makes none)\n";
+    let note = "smooth 30: made 48 normals (--smooth off shows facets)\n";
     assert!(notes(None, &[]).contains(note));
     assert!(!notes(Some("off"), &[]).contains("smooth"));
     assert!(notes(Some("off"), &["--smooth", "30"]).contains(note));

@@ -8,6 +8,7 @@ fn word(all: &[u32], which: usize) -> Vec<u32> {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn lanes_of_a_warp_exchange() {
     // Two blocks of two warps: the second block runs backwards.
     let all = Bench::new(128 * 12).run("warp_words", 2, 64);
@@ -30,6 +31,7 @@ fn lanes_of_a_warp_exchange() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_block_waits_at_its_barriers() {
     let bench = Bench::new(5);
     let sums = bench.run("block_sum", 5, 256);
@@ -39,12 +41,14 @@ fn a_block_waits_at_its_barriers() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_block_has_the_shared_memory_that_it_asks_for() {
     let out = Bench::new(96).run("dynamic_shared", 2, 48);
     assert_eq!(out, (0..96).map(|thread| 47 - thread % 48).collect::<Vec<_>>());
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn atomic_operations_of_many_blocks_lose_nothing() {
     let bench = Bench::new(7);
     bench.out.write(&[0, 0, 0, u32::MAX]).unwrap();
@@ -55,6 +59,7 @@ fn atomic_operations_of_many_blocks_lose_nothing() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn threads_that_meet_nobody_run_in_any_number() {
     let out = Bench::new(100_000).run("write_numbers", 391, 256);
     assert_eq!(out, (0..100_000).collect::<Vec<_>>());

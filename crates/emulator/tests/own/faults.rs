@@ -12,6 +12,7 @@ fn says(message: &str, parts: &[&str]) {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_collective_that_a_thread_does_not_reach() {
     let message = Bench::new(256).fault("wait_for_ended", 2, 64, 0);
     says(
@@ -21,12 +22,14 @@ fn a_collective_that_a_thread_does_not_reach() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn threads_that_wait_at_different_places() {
     let message = Bench::new(64).fault("wait_at_two_places", 1, 64, 0);
     says(&message, &["thread 0 waits at __syncwarp", "for thread 3, which waits at __syncthreads"]);
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_barrier_for_some_threads_of_the_block() {
     let bench = Bench::new(64);
     let message = bench.fault("barrier_for_some", 1, 64, 63);
@@ -36,6 +39,7 @@ fn a_barrier_for_some_threads_of_the_block() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn the_first_block_that_fails_is_named() {
     for _ in 0..20 {
         let message = Bench::new(1).fault("trap", 1000, 256, 256 * 700 + 11);
@@ -44,6 +48,7 @@ fn the_first_block_that_fails_is_named() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn wrong_masks() {
     says(
         &Bench::new(32).fault("not_in_mask", 1, 32, 0),
@@ -55,6 +60,7 @@ fn wrong_masks() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn writing_outside_of_memory() {
     let bench = Bench::new(10);
     for (choice, part) in
@@ -67,6 +73,7 @@ fn writing_outside_of_memory() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn addresses_that_are_none() {
     let bench = Bench::new(32);
     says(&bench.fault("wild_address", 3, 64, 50), &["own::wild_address: block 0: thread 50 reads or writes at"]);
@@ -75,6 +82,7 @@ fn addresses_that_are_none() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn writing_outside_of_shared_memory() {
     let bench = Bench::new(32);
     says(&bench.fault("write_outside_shared", 1, 32, 3), &["past the end of small (12 bytes)"]);
@@ -82,6 +90,7 @@ fn writing_outside_of_shared_memory() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn too_much_shared_memory() {
     says(
         &Bench::new(32).fault("much_shared", 1, 32, 0),
@@ -90,6 +99,7 @@ fn too_much_shared_memory() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_device_works_on_after_a_failure() {
     let bench = Bench::new(3072);
     bench.fault("wait_for_ended", 3, 1024, 0);
@@ -98,6 +108,7 @@ fn a_device_works_on_after_a_failure() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn launches_that_do_not_fit_the_kernel() {
     let bench = Bench::new(1);
     says(&bench.fault("no_such_kernel", 1, 32, 0), &["own::no_such_kernel: there is no such kernel"]);

@@ -11,6 +11,7 @@ use crate::Bench;
 const POISON: u32 = 0xfffa_5a5a;
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn what_nobody_has_set_is_poison() {
     assert!(f32::from_bits(POISON).is_nan() && f64::from_bits(u64::from(POISON) << 32).is_nan());
     let pool = Pool::new(Arc::new(Emulator::new()));
@@ -20,6 +21,7 @@ fn what_nobody_has_set_is_poison() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn devices_have_constants_of_their_own() {
     let (one, other) = (Bench::new(4), Bench::new(4));
     one.pool.runtime().constant("own", "table", bytemuck::cast_slice(&[1u32, 2, 3, 4])).unwrap();
@@ -33,6 +35,7 @@ fn devices_have_constants_of_their_own() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn memory_can_be_used_up_and_is_given_back() {
     let pool = Pool::new(Arc::new(Emulator::with_memory(1000)));
     assert_eq!(pool.runtime().free_memory(), Some(1000));
@@ -47,6 +50,7 @@ fn memory_can_be_used_up_and_is_given_back() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn one_allocation_fails_where_a_test_wants_it() {
     let device = Emulator::new();
     device.fail_allocation(2);
@@ -57,6 +61,7 @@ fn one_allocation_fails_where_a_test_wants_it() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn addresses_are_aligned_and_bounds_are_kept() {
     let device = Emulator::new();
     for bytes in [1, 3, 255, 256, 257] {
@@ -73,6 +78,7 @@ fn addresses_are_aligned_and_bounds_are_kept() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn traffic_is_counted() {
     let bench = Bench::new(8);
     bench.pool.runtime().take_traffic();

@@ -175,6 +175,7 @@ fn check(what: &str, corners: &[[Vec3; 3]], regions: &[Asked], random: &mut Rand
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn regions_hold_what_meets_them() {
     let mut found = 0;
     for (number, kind) in triangles::ALL.iter().cycle().take(30 * triangles::ALL.len()).enumerate() {
@@ -191,6 +192,7 @@ fn regions_hold_what_meets_them() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn a_search_finds_more_than_one_round_holds() {
     let random = &mut Random::new(3);
     // One triangle many times, hardly moved: structures hold identical ones once.
@@ -205,6 +207,7 @@ fn a_search_finds_more_than_one_round_holds() {
 
 /// Where shapes are stored once, the same is found as among copies of them.
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn instances_are_found_like_copies() {
     let scene = many_balls();
     let flat = scene.geometry.mesh.flattened().unwrap();
@@ -235,6 +238,7 @@ fn instances_are_found_like_copies() {
 }
 
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn nothing_below_all_planes_is_found() {
     let floor = [Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0), Vec3::new(0.0, 0.0, 1.0)];
     let corners = [floor, floor.map(|corner| corner + 0.5 * Vec3::Y)];
@@ -254,6 +258,7 @@ fn nothing_below_all_planes_is_found() {
 
 /// Structures hold the triangles of a scene that are [usable](Triangle::is_usable): none finds the others.
 #[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn what_cannot_be_hit_is_not_found() {
     let corners = [[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::ZERO, Vec3::X, Vec3::splat(1e30)]];
     assert!(!Triangle::new(corners[1], 1).is_usable());

@@ -12,7 +12,7 @@ use crate::scenes::{ACCELERATIONS, GLAZED, LAMPS, SUBJECTS, SURROUNDED, Subject}
 use crate::trials::{Case, Target};
 
 const SIZE: [u32; 2] = [33, 27];
-/// A quarter of the pixels, for scenes with many triangles.
+/// A quarter of the pixels, for scenes with many triangles, and for what is kept from image to image.
 const SMALL: [u32; 2] = [17, 13];
 
 /// What is gathered depends on lights, opacity and instances: these subjects have lamps, glass, cut-outs, instances and surroundings.
@@ -24,7 +24,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     let mut cases = Vec::new();
     for subject in SUBJECTS.iter().chain([&SURROUNDED, &LAMPS, &GLAZED]) {
         let chosen = CHOSEN.contains(&subject.name);
-        let structures = if subject.small { ACCELERATIONS.len() } else { 2 };
+        let structures = if subject.small { R::STRUCTURES } else { 2 };
         for structure in 0..structures {
             let name = format!("{}::gathered::{structure}", subject.name);
             let of_large = subject.name == LARGE && structure == 0;
@@ -43,12 +43,11 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
     cases
 }
 
-fn settings(subject: &'static Subject, to_the_right: f32) -> Settings {
+fn settings(subject: &'static Subject, to_the_right: f32, size: [u32; 2]) -> Settings {
     let scene = subject.scene();
     let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.default_camera(Default::default()));
     let (right, ..) = camera.basis();
     let position = camera.position + to_the_right * subject.step * right;
-    let size = if subject.small || runs_all() { SIZE } else { SMALL };
     let settings = Settings::default().with_ambient_light(AmbientSource::Mesh).with_quality(Quality::Draft);
     let settings = settings.with_size(size).with_samples(4).with_step(Step::Fixed(subject.step)).with_aa(1);
     settings.with_camera(camera.with_position(position)).with_bounces(1).with_layers(true)
@@ -61,7 +60,8 @@ fn gathered(frame: &Frame) -> Vec<[u32; 3]> {
 
 fn same_light<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: usize) {
     let scene = subject.prepared(structure);
-    let settings = settings(subject, 0.0).with_acceleration(ACCELERATIONS[structure].clone());
+    let size = if subject.small || runs_all() { SIZE } else { SMALL };
+    let settings = settings(subject, 0.0, size).with_acceleration(ACCELERATIONS[structure].clone());
     let [host, device] = same_frame(cuda, scene, settings);
     let is_lit = !scene.geometry.triangles.stored().is_empty() && !scene.scene.lights.list.is_empty();
     assert_eq!(host.stats.counts.gather_rays > 0, is_lit, "{}", host.stats.counts.gather_rays);
@@ -72,7 +72,7 @@ fn same_light<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: u
 
 /// Without sites: each surface point for itself.
 fn same_by_rays<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
-    let settings = settings(subject, 0.0).with_ambient_light(AmbientSource::Rays).with_size([9, 7]);
+    let settings = settings(subject, 0.0, SIZE).with_ambient_light(AmbientSource::Rays).with_size([9, 7]);
     let [host, device] = same_frame(cuda, subject.prepared(0), settings);
     assert!(host.stats.counts.gather_rays > 256 * host.stats.counts.hits);
     let differ = gathered(&host).iter().zip(gathered(&device)).filter(|(a, b)| **a != *b).count();
@@ -83,9 +83,10 @@ fn same_by_rays<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
 fn same_as_without<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     let scene = subject.prepared(0);
     let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let size = if runs_all() { SIZE } else { SMALL };
     let mut rays = Vec::new();
     for to_the_right in [0.0, 1.5, 0.0] {
-        let settings = settings(subject, to_the_right);
+        let settings = settings(subject, to_the_right, size);
         let with = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
         let without = render_on(cuda, scene, &settings, &Unobserved).unwrap();
         assert!(gathered(&with) == gathered(&without), "{to_the_right}");
@@ -103,7 +104,8 @@ fn same_as_without<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
 fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     let folder = tempfile::tempdir().unwrap();
     let [of_device, of_host, again] = ["device.mesh", "host.mesh", "again.mesh"].map(|name| folder.path().join(name));
-    let (scene, settings) = (subject.prepared(0), settings(subject, 0.0));
+    let size = if runs_all() { SIZE } else { SMALL };
+    let (scene, settings) = (subject.prepared(0), settings(subject, 0.0, size));
     let (mut kept, mut on_host) = (Kept::default(), Kept::default());
     let fresh = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
     let fresh_on_host = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
@@ -130,7 +132,7 @@ fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     kept.save(&again, scene).unwrap();
     assert!(!R::EXACT || bytes(&again) == bytes(&of_host), "the device writes another file");
     // 3. A device adds to what it read.
-    let elsewhere = self::settings(subject, 1.5);
+    let elsewhere = self::settings(subject, 1.5, size);
     let mut kept = Kept::load(&of_device, scene, Default::default()).unwrap();
     let with = render_on_with(cuda, &mut kept, scene, &elsewhere, &Unobserved).unwrap();
     assert!(gathered(&with) == gathered(&render_on(cuda, scene, &elsewhere, &Unobserved).unwrap()));

@@ -10,7 +10,7 @@ use crate::scenes::{SUBJECTS, Subject};
 use crate::trials::{Case, Target};
 
 const SIZE: [u32; 2] = [45, 37];
-/// For scenes with many triangles.
+/// For scenes with many triangles or many lights.
 const SMALL: [u32; 2] = [18, 13];
 
 pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
@@ -104,7 +104,7 @@ fn settings(subject: &'static Subject, step: usize) -> Settings {
     let position = camera.position + 3.0 * subject.step * step as f32 * right;
     Settings::default()
         .with_aa(1)
-        .with_size(if subject.small || runs_all() { SIZE } else { SMALL })
+        .with_size(if matches!(subject.name, "soup" | "half_plane") || runs_all() { SIZE } else { SMALL })
         .with_bounces(2)
         .with_samples(4)
         .with_step(Step::Fixed(subject.step))

@@ -16,12 +16,20 @@ mod scenes;
 #[cfg(unix)]
 mod stages;
 #[cfg(unix)]
+mod structures;
+#[cfg(unix)]
 mod textured;
 #[cfg(unix)]
 mod trials;
 
 fn main() -> std::process::ExitCode {
     let arguments = libtest_mimic::Arguments::from_args();
+    if cfg!(no_cxx) {
+        #[expect(clippy::print_stderr, reason = "trials that are ignored have no reason of their own")]
+        {
+            eprintln!("twins on the emulator are ignored: no C++ compiler worked; install one, or set CXX");
+        }
+    }
     #[cfg(unix)]
     let trials = trials::all();
     // On other systems the emulator has no fibres.

@@ -19,7 +19,9 @@ pub(crate) fn rows(levels: &[usize], seed: u64) -> Vec<Vec<usize>> {
     let mut open = BTreeSet::new();
     for (first, &levels_of_first) in levels.iter().enumerate() {
         for (second, &levels_of_second) in levels.iter().enumerate().skip(first + 1) {
-            open.extend((0..levels_of_first).flat_map(|a| (0..levels_of_second).map(move |b| [(first, a), (second, b)])));
+            open.extend(
+                (0..levels_of_first).flat_map(|a| (0..levels_of_second).map(move |b| [(first, a), (second, b)])),
+            );
         }
     }
     let mut rows = Vec::new();
@@ -27,7 +29,7 @@ pub(crate) fn rows(levels: &[usize], seed: u64) -> Vec<Vec<usize>> {
         let candidates: Vec<_> = (0..CANDIDATES).map(|_| candidate(levels, pair, &mut random)).collect();
         let best = candidates.into_iter().max_by_key(|row| pairs(row).filter(|pair| open.contains(pair)).count());
         let row = best.expect("there are candidates");
-        pairs(&row).for_each(|pair| drop(open.remove(&pair)));
+        open.retain(|pair| !pairs(&row).any(|covered| covered == *pair));
         rows.push(row);
     }
     rows

@@ -4,11 +4,11 @@ use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene,
-    Settings, Step, Unobserved, render_on, visibility_on,
+    AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene, Settings, Step,
+    Unobserved, render_on, visibility_on,
 };
 use lightmesh_scene::{Bounds, Up};
-use lightmesh_testkit::{Picture, Random, seed};
+use lightmesh_testkit::{Picture, Random, runs_all, seed};
 
 use crate::pairwise;
 use crate::scenes::{ACCELERATIONS, GLAZED, GLAZED_INSTANCES, MIRRORS, SUBJECTS, SURROUNDED, Subject, TEXTURED};
@@ -58,7 +58,8 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         for way in WAYS {
             for kind in [Kind::Picture, Kind::Samples, Kind::Points] {
                 let name = format!("{}::{}::{}", subject.name, kind.name(), way.0);
-                let case = Case::new(name, move |cuda| same(cuda, subject, way, kind, 0, SIZE));
+                let size = if subject.small || runs_all() { SIZE } else { SMALL };
+                let case = Case::new(name, move |cuda| same(cuda, subject, way, kind, 0, size));
                 cases.push(case.only_if(way.0 == "lists" || CHOSEN.contains(&(way.0, subject.name, kind))));
             }
         }
@@ -130,14 +131,7 @@ impl Kind {
 }
 
 /// Compares one kind. `structure` is a place in [`ACCELERATIONS`].
-fn same<R: Target>(
-    cuda: &Cuda<R>,
-    subject: &'static Subject,
-    way: Way,
-    kind: Kind,
-    structure: usize,
-    size: [u32; 2],
-) {
+fn same<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way, kind: Kind, structure: usize, size: [u32; 2]) {
     let settings = settings(subject, way).with_size(size);
     match kind {
         Kind::Picture => same_picture(cuda, subject, structure, settings),
@@ -194,11 +188,16 @@ pub(crate) fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, setti
 /// Given points, all over the scene and a little outside of it, see the same.
 fn same_at_points<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: usize, settings: Settings) {
     let scene = subject.prepared(structure);
+    let count = match (runs_all(), subject.small) {
+        (true, _) => 1500,
+        (false, true) => 400,
+        (false, false) => 150,
+    };
     let unit = Bounds { min: Vec3::ZERO, max: Vec3::ONE };
     let bounds = if scene.geometry.bounds.is_empty() { unit } else { scene.geometry.bounds };
     let mut random = Random::new(7);
     let mut signed = || Vec3::from([0; 3].map(|_| 2.0 * random.unit() as f32 - 1.0));
-    let points: Vec<Vec3> = (0..1500).map(|_| bounds.center() + 0.6 * signed() * bounds.extent()).collect();
+    let points: Vec<Vec3> = (0..count).map(|_| bounds.center() + 0.6 * signed() * bounds.extent()).collect();
     let normals: Vec<Vec3> = points.iter().map(|_| signed()).collect();
     let given = GivenPoints::new(scene, &points, &normals).unwrap();
     let settings = settings.with_acceleration(ACCELERATIONS[structure].clone());

@@ -9,7 +9,7 @@ use lightmesh_scene::{
     Dielectric, Environment, Facets, Light, LightKind, Material, NormalMap, Opacity, Scene, Sun, Texture, TextureUse,
     Up, Wrap,
 };
-use lightmesh_testkit::{SceneDraft, pile};
+use lightmesh_testkit::{SceneDraft, pile, runs_all};
 
 use crate::trials::{Case, Target};
 
@@ -39,6 +39,11 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         }
     }
     cases
+}
+
+/// Half of a size, or all of it with the whole products of tests.
+fn size(whole: [u32; 2]) -> [u32; 2] {
+    if runs_all() { whole } else { whole.map(|length| length / 2) }
 }
 
 /// A pile whose triangles alternate between all kinds of materials, two textures, and colours at some vertices.
@@ -122,7 +127,7 @@ fn same_relief_bits<R: Target>(cuda: &Cuda<R>, aa: u32, ambient: AmbientSource) 
         }
         let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
         let settings = Settings::default().with_ambient_light(ambient).with_quality(Quality::Draft).with_bounces(2);
-        assert_same_bits(cuda, &scene, &settings.with_size([40, 30]).with_aa(aa), 3);
+        assert_same_bits(cuda, &scene, &settings.with_size(size([40, 30])).with_aa(aa), 3);
     }
 }
 
@@ -140,7 +145,7 @@ fn surrounded() -> Scene {
 /// Smooth and rough facets under lights with a size and without, one of them the panorama's sun, in mirrors and in gathered light.
 fn same_facet_bits<R: Target>(cuda: &Cuda<R>, ambient: AmbientSource, aa: u32) {
     let scene = PreparedScene::new(&faceted(), &Acceleration::Bvh, &Unobserved).unwrap();
-    let settings = Settings::default().with_ambient_light(ambient).with_bounces(2).with_size([48, 36]).with_aa(aa);
+    let settings = Settings::default().with_ambient_light(ambient).with_bounces(2).with_size(size([48, 36])).with_aa(aa);
     assert_same_bits(cuda, &scene, &settings, 2);
 }
 
@@ -157,7 +162,7 @@ fn same_roughness_bits<R: Target>(cuda: &Cuda<R>, aa: u32, ambient: AmbientSourc
     let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
     for bounces in [0, 2] {
         let settings = Settings::default().with_ambient_light(ambient).with_quality(Quality::Draft);
-        let settings = settings.with_bounces(bounces).with_size([40, 30]).with_aa(aa);
+        let settings = settings.with_bounces(bounces).with_size(size([40, 30])).with_aa(aa);
         assert_same_bits(cuda, &scene, &settings, 3);
     }
 }

@@ -11,13 +11,17 @@ use lightmesh_render::cuda::{Driver, Runtime, open_cuda};
 use lightmesh_render::{Device, devices};
 use lightmesh_testkit::runs_all;
 
-use crate::{gathered, kept, pictures, stages, textured};
+use crate::scenes::ACCELERATIONS;
+use crate::{gathered, kept, pictures, stages, structures, textured};
 
 /// Where cases run.
 pub(crate) trait Target: Runtime {
     /// Whether its sines, cosines and powers are the host's, so that nothing may differ. Those of a device may be rounded
     /// differently, so that a ray to a sampled point of a light may just pass an edge, or just miss it.
     const EXACT: bool;
+
+    /// How many structures of [`ACCELERATIONS`] it has: brute force, the last, is in the emulator alone.
+    const STRUCTURES: usize;
 
     /// How many of `all` values that depend on sampled rays may differ, if a target that is not exact may have one in `one_in`.
     fn allowed(all: usize, one_in: usize) -> usize {
@@ -27,10 +31,12 @@ pub(crate) trait Target: Runtime {
 
 impl Target for Emulator {
     const EXACT: bool = true;
+    const STRUCTURES: usize = ACCELERATIONS.len();
 }
 
 impl Target for Driver {
     const EXACT: bool = false;
+    const STRUCTURES: usize = ACCELERATIONS.len() - 1;
 }
 
 /// Something that must be the same on the CPU and on a device. Panics if it is not.
@@ -93,9 +99,9 @@ fn on_emulator() -> Vec<Trial> {
             (case.run)(&Cuda::new(Arc::new(Emulator::new())));
             Ok(())
         })
-        .with_ignored_flag(left_out)
+        .with_ignored_flag(left_out || cfg!(no_cxx))
     };
-    cases().map(trial).collect()
+    cases().map(trial).chain(structures::trials()).collect()
 }
 
 /// The trials share the device and take turns.

@@ -42,9 +42,9 @@ impl View {
     /// A short description of its purpose.
     pub fn help(self) -> &'static str {
         match self {
-            Self::Standard => "Colours as they are; what is brighter than white is cut off",
+            Self::Standard => "Colours as they are, clipped at white",
             Self::Neutral => "Khronos PBR Neutral: colours of materials as they are, highlights compressed",
-            Self::Agx => "AgX with its base look, as in Blender 4: compressed as on film, bright colours turn white",
+            Self::Agx => "AgX base look, as in Blender 4: compressed as on film, bright colours whiten",
         }
     }
 

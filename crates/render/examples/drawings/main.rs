@@ -1,6 +1,6 @@
-//! Draws the figures of METHOD.md, from data computed by the renderer itself: `cargo xtask drawings`.
+//! Draws the figures of `docs/method/`, from data computed by the renderer itself: `cargo xtask drawings`.
 //!
-//! `cargo run -p lightmesh-render --example drawings -- DIR [--check]` writes each figure to DIR, or only compares it with the
+//! `cargo run -p lightmesh-render-examples --bin drawings -- DIR [--check]` writes each figure to DIR, or only compares it with the
 //! existing file.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
 

@@ -30,7 +30,7 @@ const ROUNDING: f32 = 1.0 / (1 << 19) as f32;
 const LONGER: f32 = 1.0 / (1 << 16) as f32;
 
 /// Searches beams in a structure.
-pub(crate) struct Beams<'a> {
+pub struct Beams<'a> {
     accelerator: &'a dyn Accelerator,
     triangles: &'a Triangles,
     coverage: &'a Coverage,
@@ -42,7 +42,7 @@ pub(crate) struct Beams<'a> {
 
 impl<'a> Beams<'a> {
     /// Beams in `accelerator`, which holds `triangles` in `bounds`.
-    pub(crate) fn new(
+    pub fn new(
         accelerator: &'a dyn Accelerator,
         triangles: &'a Triangles,
         coverage: &'a Coverage,
@@ -54,13 +54,7 @@ impl<'a> Beams<'a> {
 
     /// The closest hits of `rays`, whose directions have unit length, cut into beams of `size` rays. `far` says how far those of a beam
     /// should be searched; `None`: as far as there are triangles. The same bits as [`Accelerator::closest_hits`].
-    pub(crate) fn closest_hits(
-        &mut self,
-        rays: &[Ray],
-        size: usize,
-        far: impl Fn(usize) -> Option<f32>,
-        hits: &mut [Hit],
-    ) {
+    pub fn closest_hits(&mut self, rays: &[Ray], size: usize, far: impl Fn(usize) -> Option<f32>, hits: &mut [Hit]) {
         self.left.clear();
         let beams = rays.chunks(size).zip(hits.chunks_mut(size));
         for (beam, (rays, hits)) in beams.enumerate() {

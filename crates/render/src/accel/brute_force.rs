@@ -29,12 +29,13 @@ impl BruteForce {
     }
 
     /// The opacities of triangles that are cut out.
-    pub(crate) fn with_coverage(self, coverage: &Coverage) -> BruteForce {
+    #[doc(hidden)]
+    pub fn with_coverage(self, coverage: &Coverage) -> BruteForce {
         BruteForce { coverage: coverage.clone(), ..self }
     }
 
     /// The triangles held.
-    pub(crate) fn triangles(&self) -> &[Triangle] {
+    pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 

@@ -1,7 +1,7 @@
 // Where surfaces are that are cut out, and how opaque are those that light goes through: twin of coverage/mod.rs, bit by bit.
 //
-// Most scenes are opaque, and what cut-outs need takes registers from loops over triangles even where it is never used. So kernels that test
-// triangles are in two modules, without and with CUT_OUTS: `<module>_cut_out.cu` includes `kernel.cu`.
+// Most scenes are opaque, and what cut-outs need takes registers from loops over triangles even where it is never used. Where that costs time, the
+// kernels that test triangles are in two modules, without and with CUT_OUTS: `<module>_cut_out.cu` includes `kernel.cu`. See gpu/per_structure.rs.
 #pragma once
 
 #include "accel/instanced.cuh"
@@ -62,13 +62,22 @@ COLD bool covers_hit(Coverage coverage, unsigned cut, Weights weights) {
     return covers(coverage, cut, (float)(weights.v / weights.det), (float)(weights.w / weights.det));
 }
 
+// Where the triangles of a structure are cut out; null if all of them are opaque.
+template <class Structure>
+DEVICE const Coverage *coverage_of(const Structure &structure) {
+    return CUT_OUTS && structure.coverage.triangles != nullptr ? &structure.coverage : nullptr;
+}
+
+// The host takes a BVH in place of a grid where anything is cut out.
+DEVICE const Coverage *coverage_of(const Grid &) { return nullptr; }
+
 // Whether there is a surface where a triangle is hit.
 template <class Handle>
-DEVICE bool has_surface(const Coverage &coverage, const Handle &triangle, const Weights &weights) {
-    if (!CUT_OUTS)
+DEVICE bool has_surface(const Coverage *coverage, const Handle &triangle, const Weights &weights) {
+    if (coverage == nullptr)
         return true;
     const unsigned cut = triangle_cut(triangle);
-    return cut == 0 || covers_hit(coverage, cut, weights);
+    return cut == 0 || covers_hit(*coverage, cut, weights);
 }
 
 // Whether there is a surface where the segment from `origin` along `direction` meets the plane of the cut-out triangle number `cut`.
@@ -87,9 +96,9 @@ COLD bool stops_cut(Coverage coverage, unsigned cut, Corners corners, Vec3 origi
 
 // The same for any triangle.
 template <class Handle>
-DEVICE bool stops(const Coverage &coverage, const Handle &triangle, const Corners &corners, Vec3 origin, Vec3 direction) {
-    if (!CUT_OUTS)
+DEVICE bool stops(const Coverage *coverage, const Handle &triangle, const Corners &corners, Vec3 origin, Vec3 direction) {
+    if (coverage == nullptr)
         return true;
     const unsigned cut = triangle_cut(triangle);
-    return cut == 0 || stops_cut(coverage, cut, corners, origin, direction);
+    return cut == 0 || stops_cut(*coverage, cut, corners, origin, direction);
 }

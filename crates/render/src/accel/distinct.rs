@@ -10,7 +10,7 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::Triangle;
 
 /// Their positions in `triangles`, ascending.
-pub(super) fn distinct(triangles: &[Triangle]) -> Vec<u32> {
+pub fn distinct(triangles: &[Triangle]) -> Vec<u32> {
     let mut usable: Vec<(u64, u32)> = triangles
         .par_iter()
         .enumerate()
@@ -36,25 +36,4 @@ pub(super) fn distinct(triangles: &[Triangle]) -> Vec<u32> {
 
 fn bits(triangle: &Triangle) -> [[u32; 3]; 3] {
     triangle.corners().map(|corner: Vec3| corner.to_array().map(f32::to_bits))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn triangle(size: f32, index: u32) -> Triangle {
-        Triangle::new([Vec3::ZERO, size * Vec3::X, size * Vec3::Y], index)
-    }
-
-    #[test]
-    fn one_of_identical_triangles_is_held() {
-        let triangles = [triangle(1.0, 4), triangle(2.0, 3), triangle(1.0, 2), triangle(0.0, 1), triangle(2.0, 5)];
-        assert_eq!(distinct(&triangles), [1, 2]);
-        let mut cut = triangles.map(|triangle| triangle.cut_out(u32::from(triangle.index() != 3)));
-        assert_eq!(distinct(&cut), [0, 1, 2, 4], "what is cut out may differ");
-        cut[0] = triangle(1.0, 4);
-        assert_eq!(distinct(&cut), [0, 1, 2, 4]);
-        let turned = [Vec3::X, Vec3::Y, Vec3::ZERO];
-        assert_eq!(distinct(&[triangle(1.0, 0), Triangle::new(turned, 1)]), [0, 1], "other corners come first");
-    }
 }

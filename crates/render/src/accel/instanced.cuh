@@ -2,7 +2,7 @@
 //
 // Where triangles are told by index, those of instances begin at FIRST_INSTANCED; where by their place in a structure, too: then they are in the
 // order of the shape's leaves. What looks them up is in functions of its own, and not in modules without INSTANCES: it would take registers
-// from loops over triangles. Scenes with instances use modules with CUT_OUTS, where there are two.
+// from loops over triangles. See gpu/per_structure.rs.
 #pragma once
 
 #include "accel/triangle.cuh"

@@ -25,7 +25,7 @@ const _: () = assert!(FIRST_INSTANCED == lightmesh_layout::constants::FIRST_INST
 
 /// A shape at one of its places.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Instanced {
+pub struct Instanced {
     pub(crate) place: Affine,
     pub(crate) back: Affine,
     /// The index of its first triangle.

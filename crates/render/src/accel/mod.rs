@@ -18,18 +18,16 @@
 //! ones, with the same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
 
 mod approach;
-mod beam;
+pub(crate) mod beam;
 mod brute_force;
-mod bvh;
+pub(crate) mod bvh;
 pub(crate) mod coverage;
-mod distinct;
-mod grid;
+pub(crate) mod distinct;
+pub(crate) mod grid;
 mod instanced;
 mod packet;
 mod region;
 mod sieve;
-#[cfg(test)]
-mod tests;
 pub mod triangle;
 mod visit;
 
@@ -103,7 +101,8 @@ pub struct ShortSegments<'a> {
     /// Triangles whose bounding box comes this close to a segment must be tested, scene units.
     pub slack: f32,
     /// Where triangles are cut out.
-    pub(crate) coverage: &'a Coverage,
+    #[doc(hidden)]
+    pub coverage: &'a Coverage,
 }
 
 impl ShortSegments<'_> {

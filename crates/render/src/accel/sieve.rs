@@ -1,4 +1,4 @@
-//! Triangles that a region may meet, eight at a time.
+//! Which triangles of a list a region may meet, eight at a time.
 
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;

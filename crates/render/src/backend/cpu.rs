@@ -26,6 +26,7 @@ use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::plan::Plan;
 use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
+use crate::settings::Acceleration;
 use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
@@ -71,6 +72,10 @@ impl Backend for Cpu {
         work: impl FnOnce() -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
         job.wall_time(stage, work)
+    }
+
+    fn check_structure(&self, _: &Acceleration) -> Result<(), RenderError> {
+        Ok(())
     }
 
     fn scene(&self, _: &Job, scene: &PreparedScene, _: Option<u64>) -> Result<PreparedScene, RenderError> {

@@ -21,11 +21,13 @@ use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::gathered::cuda::{DeviceGathered, DeviceSurfaceLight};
 use crate::gathered::{self, Gathering};
+use crate::gpu;
 use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
 use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
+use crate::settings::Acceleration;
 use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
@@ -62,6 +64,10 @@ impl<R: Runtime> Backend for Cuda<R> {
     /// Uses the device's clock; the time is read when the band is done.
     fn timed<T>(&self, _: &Job, stage: Stage, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
         self.on_device_clock(stage, work)
+    }
+
+    fn check_structure(&self, acceleration: &Acceleration) -> Result<(), RenderError> {
+        gpu::check_structure(self.pool().runtime(), acceleration)
     }
 
     fn scene(

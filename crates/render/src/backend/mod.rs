@@ -36,6 +36,7 @@ use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
 use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
+use crate::settings::Acceleration;
 pub use crate::shadow::Aim;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
@@ -99,6 +100,9 @@ pub trait Backend: Sized {
         stage: Stage,
         work: impl FnOnce() -> Result<T, RenderError>,
     ) -> Result<T, RenderError>;
+
+    /// Rejects an acceleration structure that the device does not have, before any work.
+    fn check_structure(&self, acceleration: &Acceleration) -> Result<(), RenderError>;
 
     /// Uploads the scene. Geometry that is already on the device stays. From now on the device allocates at most `memory_limit` bytes of its
     /// memory; `None`: what is free, minus a reserve.

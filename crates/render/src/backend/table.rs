@@ -49,7 +49,7 @@ macro_rules! stage_table {
             items(wave: &WaveOf<Self>) -> Self::Items;
             /// Finds the same as `area_shadows`, by what stands between an item and the light.
             occluder_lists(wave: &WaveOf<Self>, items: &Self::Items, aim: &Aim) -> Self::Visibility;
-            /// What is left of the lights after `panes`, of which only what is not opaque is hit; of the wave's scene only what is opaque hides.
+            /// Multiplies visibility by the transmittance of the surfaces of `panes` that are not opaque.
             filters(wave: &WaveOf<Self>, panes: &Self::Scene, aim: &Aim, visibility: Self::Visibility) -> Self::Visibility;
             /// Adds the radiance of each ray to its pixel. Formula (1).
             shade(

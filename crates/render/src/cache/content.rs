@@ -8,28 +8,33 @@ use crate::prepared::PreparedScene;
 
 /// What a file holds of one geometry.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Section {
+pub struct Section {
     /// Hash of the geometry.
-    pub(super) geometry: u64,
-    pub(super) places: Places,
-    pub(super) stored: Stored,
+    pub geometry: u64,
+    /// Where its light points lie.
+    pub places: Places,
+    /// What they see.
+    pub stored: Stored,
 }
 
 /// What surfaces of a geometry gathered, as files hold it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SavedGathered {
+pub struct SavedGathered {
     /// Hash of the geometry.
-    pub(super) geometry: u64,
+    pub geometry: u64,
     /// Hash of all that it depends on.
-    pub(super) sources: u64,
-    pub(super) light: SavedLight,
+    pub sources: u64,
+    /// What was gathered.
+    pub light: SavedLight,
 }
 
 /// What files hold.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Content {
-    pub(super) points: Vec<Section>,
-    pub(super) gathered: Vec<SavedGathered>,
+pub struct Content {
+    /// Light points, by geometry.
+    pub points: Vec<Section>,
+    /// Gathered light, by geometry.
+    pub gathered: Vec<SavedGathered>,
 }
 
 impl Content {
@@ -86,8 +91,11 @@ impl Section {
 
 /// What determines the positions of light points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Places {
-    pub(super) anchor: Vec3,
-    pub(super) step: f32,
-    pub(super) number: UVec3,
+pub struct Places {
+    /// See [`Lattice`](crate::light_mesh::Lattice).
+    pub anchor: Vec3,
+    /// See [`Lattice`](crate::light_mesh::Lattice).
+    pub step: f32,
+    /// See [`Lattice`](crate::light_mesh::Lattice).
+    pub number: UVec3,
 }

@@ -7,13 +7,13 @@
 //! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light. What all
 //! backends keep goes to the same [files](file), and comes from there, by way of one [form](content).
 
-mod content;
+pub(crate) mod content;
 mod device;
-mod file;
+pub(crate) mod file;
 mod host;
-mod noticed;
-mod seen;
-mod stored;
+pub(crate) mod noticed;
+pub(crate) mod seen;
+pub(crate) mod stored;
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
@@ -181,9 +181,9 @@ pub trait Table: Default {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Allowance {
     /// The number of the image, which becomes the age of what it uses.
-    image: u32,
+    pub image: u32,
     /// Bytes; `None`: as many as there are.
-    most: Option<u64>,
+    pub most: Option<u64>,
 }
 
 /// Light points may take one part in this many of the memory that is left.

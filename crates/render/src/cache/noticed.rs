@@ -1,4 +1,4 @@
-//! Which light points may have noticed that things moved.
+//! Which cached light points a motion invalidates.
 //!
 //! What a light point sees of a light depends only on triangles between them. So it is the same as before if no triangle that moved comes
 //! near the hull of the point and the light, where it was and where it is: the hull of two boxes is the union of all boxes between them,
@@ -12,7 +12,7 @@ use crate::light_mesh::{BrickKey, Lattice, point_of};
 use crate::moved::around_both;
 use crate::prepared::PreparedGeometry;
 
-/// Tells which bricks of light points may see a light otherwise than before.
+/// Tells which bricks of light points a motion invalidates for a light.
 pub struct Noticed<'a> {
     /// Around what moved, and enlarged for rounding.
     boxes: Vec<Bounds>,
@@ -31,7 +31,7 @@ impl<'a> Noticed<'a> {
         Noticed { boxes: boxes.iter().map(enlarged).collect(), lattice, far: 4.0 * (size + lattice.step) }
     }
 
-    /// Whether light points of a brick may see a light of this kind otherwise.
+    /// Whether what light points of a brick see of a light of this kind may have changed.
     pub(crate) fn by(&self, brick: BrickKey, light: &LightKind) -> bool {
         let first = self.lattice.point(point_of(brick << POINT_BITS));
         let last = first + self.lattice.step * ((1 << BRICK_BITS) - 1) as f32;
@@ -61,7 +61,7 @@ impl<'a> Noticed<'a> {
 }
 
 /// Whether a box meets the hull of two others.
-fn meets_between(from: &Bounds, to: &Bounds, other: &Bounds) -> bool {
+pub fn meets_between(from: &Bounds, to: &Bounds, other: &Bounds) -> bool {
     let (mut least, mut most) = (0.0f32, 1.0f32);
     for axis in 0..3 {
         // The boxes between begin below the other's end, and end above its beginning.
@@ -79,55 +79,4 @@ fn meets_between(from: &Bounds, to: &Bounds, other: &Bounds) -> bool {
         }
     }
     least <= most + 1e-5
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(x: f32, y: f32, z: f32, half: f32) -> Bounds {
-        let middle = Vec3::new(x, y, z);
-        Bounds { min: middle - half, max: middle + half }
-    }
-
-    #[test]
-    fn only_what_is_between_is_met() {
-        let (points, light) = (at(0.0, 0.0, 0.0, 1.0), at(10.0, 10.0, 0.0, 0.1));
-        for (other, meets) in [
-            (at(5.0, 5.0, 0.0, 0.2), true),
-            (at(5.0, 5.0, 1.0, 0.6), true),
-            (at(5.0, 5.0, 1.5, 0.2), false),
-            (at(5.0, 2.0, 0.0, 0.2), false),
-            (at(0.0, 0.0, 0.0, 0.1), true),
-            (at(10.0, 10.0, 0.0, 0.01), true),
-            (at(11.0, 11.0, 0.0, 0.5), false),
-            (at(-2.0, -2.0, 0.0, 0.5), false),
-        ] {
-            assert_eq!(meets_between(&points, &light, &other), meets, "{other:?}");
-            assert_eq!(meets_between(&light, &points, &other), meets, "{other:?}");
-        }
-    }
-
-    #[test]
-    fn a_box_that_segments_go_through_is_always_met() {
-        let mut seed = 1u32;
-        let mut number = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (seed >> 8) as f32 / (1 << 24) as f32
-        };
-        let mut met = 0;
-        for _ in 0..20_000 {
-            let mut place = |scale: f32| scale * Vec3::new(number() - 0.5, number() - 0.5, number() - 0.5);
-            let [a, b, c] = [place(4.0), place(4.0), place(4.0)];
-            let half = place(1.0).abs();
-            let (from, to) = (Bounds { min: a - half, max: a + half }, Bounds { min: b - half, max: b + half });
-            let other = Bounds { min: c - 0.3, max: c + 0.3 };
-            let (start, end) = (a + place(2.0).clamp(-half, half), b + place(2.0).clamp(-half, half));
-            let inside = (0..=64).map(|i| start.lerp(end, i as f32 / 64.0));
-            let goes_through = inside.into_iter().any(|p| p.cmpge(other.min).all() && p.cmple(other.max).all());
-            met += usize::from(goes_through);
-            assert!(!goes_through || meets_between(&from, &to, &other), "{from:?} {to:?} {other:?}");
-        }
-        assert!(met > 300, "{met}");
-    }
 }

@@ -1,4 +1,4 @@
-//! What determines what light points see of a light.
+//! The key of a cached column: everything that determines what light points see of one light.
 
 use lightmesh_scene::{Light, LightKind};
 
@@ -6,10 +6,11 @@ use crate::job::Sampling;
 
 /// What determines the values of a column, apart from the light's index, which is the column's.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Seen {
-    pub(super) kind: LightKind,
+pub struct Seen {
+    /// The shape of the light.
+    pub kind: LightKind,
     /// Samples and seed, for an area light.
-    pub(super) sampling: Option<(u32, u64)>,
+    pub sampling: Option<(u32, u64)>,
 }
 
 impl Seen {

@@ -11,7 +11,7 @@ pub(super) const POINTS: usize = 1 << POINT_BITS;
 
 /// Bytes that a table takes at most for so many bricks and these lights. Its keys grow to twice of what they hold, while the old ones are
 /// still there; columns, one after the other, by a [`SLACK`]th.
-pub(super) fn bytes_of_rows<'a>(bricks: usize, lights: impl Iterator<Item = &'a Seen>) -> u64 {
+pub fn bytes_of_rows<'a>(bricks: usize, lights: impl Iterator<Item = &'a Seen>) -> u64 {
     let (sum, largest) =
         lights.map(bytes_of_brick).fold((0, 0), |(sum, largest), column| (sum + column, column.max(largest)));
     let keys = 3 * (size_of::<(BrickKey, usize)>() + size_of::<u32>());
@@ -30,24 +30,27 @@ pub(super) const SLACK: usize = 4;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stored {
     /// Bricks, in ascending order.
-    pub(super) bricks: Vec<BrickKey>,
+    pub bricks: Vec<BrickKey>,
     /// The number of the last image that used each of them: of those from files, 0.
-    pub(super) ages: Vec<u32>,
+    pub ages: Vec<u32>,
     /// One for each light, in the order of lights.
-    pub(super) columns: Vec<StoredColumn>,
+    pub columns: Vec<StoredColumn>,
 }
 
 /// The known values for one light.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct StoredColumn {
-    pub(super) seen: Seen,
+pub struct StoredColumn {
+    /// What determines the values.
+    pub seen: Seen,
     /// The light points whose value is known, by brick.
-    pub(super) known: Vec<u64>,
-    pub(super) answers: StoredAnswers,
+    pub known: Vec<u64>,
+    /// The values.
+    pub answers: StoredAnswers,
 }
 
+/// What known light points see of a light.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum StoredAnswers {
+pub enum StoredAnswers {
     /// Lit or not, by brick; of known light points only.
     Bits(Vec<u64>),
     /// Rays that reached the light: one number for each known light point.
@@ -73,7 +76,7 @@ impl Stored {
     }
 
     /// Leaves out bricks of which a table would take more bytes than `most`.
-    pub(super) fn limit(&mut self, most: Option<u64>) {
+    pub fn limit(&mut self, most: Option<u64>) {
         let bytes = bytes_of_rows(self.bricks.len(), self.columns.iter().map(|column| &column.seen));
         let Some(most) = most.filter(|&most| bytes > most) else { return };
         self.truncate((self.bricks.len() as u128 * u128::from(most) / u128::from(bytes)) as usize);

@@ -5,12 +5,12 @@
 
 #[cfg(not(feature = "cuda"))]
 #[path = "no_driver.rs"]
-mod driver;
+pub(crate) mod driver;
 
 mod buffer;
 #[cfg(feature = "cuda")]
-mod driver;
-mod gpu;
+pub(crate) mod driver;
+pub(crate) mod gpu;
 mod runtime;
 
 pub use buffer::{Buffer, Pool};

@@ -87,6 +87,10 @@ impl Runtime for Driver {
         match *self {}
     }
 
+    fn has_brute_force(&self) -> bool {
+        match *self {}
+    }
+
     fn free_memory(&self) -> Option<u64> {
         match *self {}
     }

@@ -11,7 +11,7 @@
 //
 //     KERNEL_PER_STRUCTURE(name, Record, THREADS, BLOCKS)
 //
-// generates a kernel for each: name_bvh, name_grid, name_brute_force. The host names them with `per_structure!`.
+// generates a kernel for each that the module walks: name_bvh, name_grid and so on. The host names them with `per_structure!`.
 //
 // Variables of a block, declared inside functions, and variables set by the host, declared outside:
 //
@@ -38,17 +38,40 @@
 #include "shim.h"
 #endif
 
-// Whether a module is for scenes in which triangles are cut out: see accel/coverage.cuh.
+// Whether a module tests what is cut out: see accel/coverage.cuh.
 #ifndef CUT_OUTS
 #define CUT_OUTS 0
 #endif
 
-// Whether it is for scenes with shapes in many places: see accel/instanced.cuh.
+// Whether it is for scenes with shapes in many places, too: see accel/instanced.cuh.
 #ifndef INSTANCES
 #define INSTANCES 1
 #endif
 
-#define KERNEL_OF_STRUCTURE(structure, name, Record, threads, blocks)                                                            \
+// Which structures a module walks: 1 or 0 each. Scenes with cut-outs or instances have no grid; some modules are for instances alone. The reference,
+// a test of every triangle, is for the emulator, which names the modules.
+#ifndef WALKS_bvh
+#define WALKS_bvh 1
+#endif
+#ifndef WALKS_grid
+#if INSTANCES
+#define WALKS_grid 0
+#else
+#define WALKS_grid 1
+#endif
+#endif
+#ifdef EMULATED_MODULE
+#define WALKS_brute_force WALKS_bvh
+#else
+#define WALKS_brute_force 0
+#endif
+#define WALKS_instanced INSTANCES
+
+#define KERNEL_OF_STRUCTURE(structure, ...) KERNEL_IF(WALKS_##structure, structure, __VA_ARGS__)
+#define KERNEL_IF(walks, ...) KERNEL_IF_EXPANDED(walks, __VA_ARGS__)
+#define KERNEL_IF_EXPANDED(walks, ...) KERNEL_IF_##walks(__VA_ARGS__)
+#define KERNEL_IF_0(...)
+#define KERNEL_IF_1(structure, name, Record, threads, blocks)                                                                    \
     KERNEL(name##_##structure, Record, threads, blocks) { name(args, args.scene.structure); }
 #define KERNEL_PER_STRUCTURE(name, Record, threads, blocks) PER_STRUCTURE(KERNEL_OF_STRUCTURE, name, Record, threads, blocks)
 

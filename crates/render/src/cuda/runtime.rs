@@ -62,6 +62,9 @@ pub trait Runtime: Send + Sync + 'static {
     /// Distinguishes devices that hold their own copies of a scene: a [`new_id`].
     fn id(&self) -> u64;
 
+    /// Whether it has the kernels that test every triangle: the reference of tests.
+    fn has_brute_force(&self) -> bool;
+
     /// Bytes that can still be allocated.
     fn free_memory(&self) -> Option<u64>;
 

@@ -229,7 +229,8 @@ impl Picture {
     }
 
     /// Takes the background out of all pixels, as far as they are not covered: what remains is premultiplied by the coverage.
-    pub(crate) fn take_out(&mut self, background: glam::Vec3) {
+    #[doc(hidden)]
+    pub fn take_out(&mut self, background: glam::Vec3) {
         let Some(coverage) = &self.coverage else { return };
         let take_out = |plane: &mut [[f32; 3]], background: glam::Vec3| {
             for (color, &coverage) in plane.iter_mut().zip(coverage) {
@@ -279,21 +280,4 @@ fn take_matte(matte: &mut Matte, band: &Matte, to: &Range<usize>, from: &Range<u
 pub(crate) fn light_groups_of(layers: &mut Layers) -> impl Iterator<Item = &mut Vec<[f32; 3]>> {
     let rest = Some(&mut layers.rest).filter(|rest| !rest.is_empty());
     layers.lights.iter_mut().chain(rest)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_not_covered_loses_its_background() {
-        let mut picture = Picture::new([3, 1], None);
-        picture.color = vec![[0.2, 0.4, 0.8], [0.6, 0.5, 0.4], [0.25; 3]];
-        picture.coverage = Some(vec![0.0, 1.0, 0.5]);
-        picture.take_out(glam::Vec3::new(0.2, 0.4, 0.8));
-        let frame = picture.into_frame();
-        assert_eq!(frame.alpha(), Some(&[0.0, 1.0, 0.5][..]));
-        let half = [0.25_f32 - 0.5 * 0.2, 0.25 - 0.5 * 0.4, 0.0];
-        assert_eq!(frame.color(), [[0.0; 3], [0.6, 0.5, 0.4], half]);
-    }
 }

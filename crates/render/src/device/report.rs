@@ -66,7 +66,7 @@ fn report(library: &Library, gpu: &Gpu) -> DeviceReport {
 }
 
 /// What is known about a CUDA device whether it can be used or not.
-fn described(gpu: &Gpu, version: Version) -> DeviceReport {
+pub fn described(gpu: &Gpu, version: Version) -> DeviceReport {
     DeviceReport {
         device: Device::Cuda(Some(gpu.number)).to_string(),
         name: gpu.name.clone(),
@@ -78,7 +78,7 @@ fn described(gpu: &Gpu, version: Version) -> DeviceReport {
 }
 
 /// The properties of a CUDA device, in one line.
-fn facts(gpu: &Gpu, free: Option<u64>, version: Version, visible: Option<&str>) -> String {
+pub fn facts(gpu: &Gpu, free: Option<u64>, version: Version, visible: Option<&str>) -> String {
     let gibibytes = |bytes: u64| format!("{:.1} GiB", bytes as f64 / f64::from(1 << 30));
     let (memory, capability) = (gibibytes(gpu.memory), capability(gpu.capability));
     let free = free.map_or_else(String::new, |free| format!(" ({} free)", gibibytes(free)));
@@ -100,35 +100,4 @@ pub(crate) fn cpu_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     name.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_processor_comes_first_and_cuda_is_always_spoken_of() {
-        let devices = devices();
-        assert_eq!((devices[0].device.as_str(), devices[0].usable), ("cpu", true));
-        assert!(
-            devices.len() > 1 && devices[1..].iter().all(|report| report.device.starts_with("cuda")),
-            "{devices:?}"
-        );
-        assert!(devices.iter().all(|report| !report.remark.is_empty()), "{devices:?}");
-    }
-
-    #[test]
-    fn a_cuda_device_is_described_in_one_line() {
-        let gpu = Gpu { number: 1, name: "Fake".into(), capability: 90, memory: 3 << 30, pools: true, handle: 0 };
-        let version = Version { major: 12, minor: 4 };
-        let text = "3.0 GiB (1.5 GiB free), compute capability 9.0, driver for CUDA 12.4";
-        assert_eq!(facts(&gpu, Some(3 << 29), version, None), text);
-        assert_eq!(
-            facts(&gpu, Some(3 << 29), version, Some("1,0")),
-            format!("{text}, numbered by CUDA_VISIBLE_DEVICES=1,0")
-        );
-        let report = described(&gpu, version);
-        assert_eq!((report.device.as_str(), report.usable), ("cuda:1", false));
-        assert_eq!(report.compute_capability.as_deref(), Some("9.0"));
-    }
 }

@@ -6,12 +6,12 @@ use lightmesh_layout::constants::BINS_PER_SIDE;
 /// Bins along each side of the octahedron's square.
 const PER_SIDE: usize = BINS_PER_SIDE as usize;
 /// Bins of all directions.
-pub(super) const BINS: usize = PER_SIDE * PER_SIDE;
+pub const BINS: usize = PER_SIDE * PER_SIDE;
 
 /// Two unit vectors that form a right-handed basis with the unit vector `n` (Duff et al.: *Building an Orthonormal Basis, Revisited*, JCGT
 /// 6(1), 2017).
 #[inline(always)]
-pub(super) fn basis(n: Vec3) -> [Vec3; 2] {
+pub fn basis(n: Vec3) -> [Vec3; 2] {
     let sign = if n.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (sign + n.z);
     let b = n.x * n.y * a;
@@ -24,7 +24,7 @@ pub(super) fn basis(n: Vec3) -> [Vec3; 2] {
 /// The square becomes the unit disc, x = u √(1 − v²/2), y = v √(1 − u²/2), and the disc the hemisphere above it, so that equal areas of the
 /// disc have the same irradiance. The weight is the map's Jacobian.
 #[inline(always)]
-pub(super) fn above(square: Vec2) -> (Vec3, f32) {
+pub fn above(square: Vec2) -> (Vec3, f32) {
     let (u, v) = (square.x * square.x, square.y * square.y);
     let (across, along) = ((1.0 - 0.5 * v).sqrt(), (1.0 - 0.5 * u).sqrt());
     let height = ((1.0 - u) * (1.0 - v)).max(0.0).sqrt();
@@ -34,7 +34,7 @@ pub(super) fn above(square: Vec2) -> (Vec3, f32) {
 
 /// The bin of a direction: its place in the octahedral map of all directions.
 #[inline(always)]
-pub(super) fn bin(direction: Vec3) -> usize {
+pub fn bin(direction: Vec3) -> usize {
     let sum = direction.x.abs() + direction.y.abs() + direction.z.abs();
     let (mut x, mut y) = (direction.x / sum, direction.y / sum);
     if direction.z < 0.0 {
@@ -43,41 +43,4 @@ pub(super) fn bin(direction: Vec3) -> usize {
     }
     let place = |along: f32| ((0.5 * along + 0.5) * PER_SIDE as f32).clamp(0.0, PER_SIDE as f32 - 1.0) as usize;
     place(y) * PER_SIDE + place(x)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn weights_are_those_of_the_cosine() {
-        // Over the hemisphere, ∫ cos = π, ∫ cos² = 2π/3; the square's area is 4.
-        let n = 256;
-        let place = |index: usize| (2 * index + 1) as f32 / n as f32 - 1.0;
-        let (mut first, mut second) = (0.0f64, 0.0f64);
-        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-            let (direction, weight) = above(Vec2::new(place(i), place(j)));
-            assert!((direction.length() - 1.0).abs() < 1e-5 && direction.z >= 0.0 && weight >= 0.0);
-            first += f64::from(weight);
-            second += f64::from(weight * direction.z);
-        }
-        let area = 4.0 / (n * n) as f64;
-        assert!((area * first - std::f64::consts::PI).abs() < 1e-3, "{}", area * first);
-        assert!((area * second - 2.0 * std::f64::consts::PI / 3.0).abs() < 1e-3, "{}", area * second);
-    }
-
-    #[test]
-    fn every_direction_has_a_bin_and_a_basis() {
-        let mut met = [0; BINS];
-        for i in 0..4000 {
-            let (sin, cos) = (2.4 * i as f32).sin_cos();
-            let z = 1.0 - (2 * i + 1) as f32 / 4000.0;
-            let r = (1.0 - z * z).sqrt();
-            let n = Vec3::new(r * cos, r * sin, z);
-            met[bin(n)] += 1;
-            let [a, b] = basis(n);
-            assert!((a.cross(b) - n).length() < 1e-5 && a.dot(b).abs() < 1e-5);
-        }
-        assert!(met.iter().all(|&count| count > 20), "{met:?}");
-    }
 }

@@ -1,6 +1,7 @@
 // Gathered light on a CUDA device, the steps that ask an acceleration structure: see mod.rs. Launched by cuda/.
-#ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

@@ -13,7 +13,7 @@
 mod bounce;
 mod cells;
 pub(crate) mod cuda;
-mod directions;
+pub(crate) mod directions;
 mod far;
 mod fine;
 mod light;

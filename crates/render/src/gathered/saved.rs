@@ -21,30 +21,34 @@ use crate::surface::SurfacePoint;
 /// What was gathered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SavedLight {
-    pub(crate) fine: SavedCells<FineLight>,
-    pub(crate) far: SavedCells<FarLight>,
+    /// Light that is gathered near by.
+    pub fine: SavedCells<FineLight>,
+    /// Light that is gathered far away.
+    pub far: SavedCells<FarLight>,
     /// In the order of their names.
-    pub(crate) nodes: Vec<SavedNode>,
+    pub nodes: Vec<SavedNode>,
 }
 
 /// Cells with their sites, and what these gather.
 #[derive(Clone, Debug)]
-pub(crate) struct SavedCells<V> {
+pub struct SavedCells<V> {
     /// In ascending order, each with the number of its sites.
-    pub(crate) cells: Vec<(CellKey, u32)>,
+    pub cells: Vec<(CellKey, u32)>,
     /// Those of all cells, one after the other.
-    pub(crate) sites: Vec<SavedSite>,
+    pub sites: Vec<SavedSite>,
     /// Of those sites that have a value, in their order.
-    pub(crate) values: Vec<V>,
+    pub values: Vec<V>,
 }
 
 /// A site of a cell, which tells its level.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct SavedSite {
+pub struct SavedSite {
     /// Its kind of surface.
-    pub(crate) kind: u8,
-    pub(crate) has_value: bool,
-    pub(crate) place: SavedPlace,
+    pub kind: u8,
+    /// Whether light was gathered there.
+    pub has_value: bool,
+    /// Where it lies, as it is stored.
+    pub place: SavedPlace,
 }
 
 /// A point of the surfaces: position, where rays begin, and normal.
@@ -52,16 +56,17 @@ pub(crate) type SavedPlace = [[f32; 3]; 3];
 
 /// What arrives at a site that rays of others hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct SavedNode {
+pub struct SavedNode {
     /// Its cell and its kind of surface.
-    pub(crate) name: u64,
+    pub name: u64,
     /// All zeros if no such surface was found.
-    pub(crate) place: SavedPlace,
+    pub place: SavedPlace,
     /// The distance of what is nearest in front of it.
-    pub(crate) nearest: f32,
+    pub nearest: f32,
     /// How many of the values are known.
-    pub(crate) known: u8,
-    pub(crate) values: [[f32; 3]; ORDERS],
+    pub known: u8,
+    /// Light, by order of reflection.
+    pub values: [[f32; 3]; ORDERS],
 }
 
 /// Bits of a kind of surface in names.

@@ -1,4 +1,4 @@
-//! Masks on a device.
+//! Masks of formula (2) on a device, transposed.
 
 use super::cells::DeviceCells;
 use crate::cuda::{Buffer, Runtime};

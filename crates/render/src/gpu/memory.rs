@@ -1,4 +1,9 @@
 //! The memory plan: the size of every buffer, before the first is allocated.
+//!
+//! It gives the buffers per pixel at the stage that needs most, and how many rows fit into the memory that is free or allowed. The numbers of
+//! light points and items are estimates there. If an image has more, an allocation fails or would exceed the limit; the band is then restarted
+//! with half of its rows (`passes.rs`). At one row the error names buffer, size and free memory. Bands are bit-identical to the whole
+//! image. If memory is short although the plan fits, cached light points are dropped first (`backend/run.rs`).
 
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Vec3};
 use lightmesh_layout::mesh::Item;

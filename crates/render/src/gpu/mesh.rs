@@ -44,8 +44,11 @@ impl<R: Runtime> Cuda<R> {
         })
     }
 
-    /// Copies the template to the constant memory of a module that is no [user](USERS): so it is loaded only if it is needed.
+    /// Copies the template to the constant memory of a module if it is no [user](USERS), which have it: so it is loaded only if it is needed.
     pub(crate) fn bring_lines(&self, module: &'static str, mesh: &LightMesh) -> Result<(), RenderError> {
+        if USERS.contains(&module) {
+            return Ok(());
+        }
         self.set_lines(module, &lines(&template_rows(mesh)))
     }
 

@@ -30,6 +30,7 @@ pub use device::Cuda;
 pub(crate) use device::{blocks_for, warps_for};
 pub(crate) use lightmesh_layout::constants::{BLOCK, BLOCK_SIDE};
 pub(crate) use mesh::sampling;
-pub(crate) use per_structure::{PerModule, PerStructure, per_module, per_structure};
+pub(crate) use per_structure::{Modules, PerModule, PerStructure, modules, per_module, per_structure};
 pub(crate) use rates::{Work, slices_of_rays};
 pub use scene::DeviceScene;
+pub(crate) use scene::check_structure;

@@ -1,17 +1,61 @@
-//! Kernels that exist once per acceleration structure.
+//! Kernels that look up triangles: which module a scene takes, and which kernel of it for its acceleration structure.
+//!
+//! Tests of what is cut out take registers from loops over triangles, even where nothing is; so do look-ups of instances. Therefore a kernel file
+//! with such kernels is compiled twice:
+//!
+//! * where the tests cost an opaque scene more than 3 % of a stage's time (`DOUBLED`), once without and once with all of it: `<module>` is for
+//!   opaque scenes, `<module>_cut_out` for those with cut-outs or instances;
+//! * elsewhere, `<module>` has the tests, behind a condition that is the same for all threads, and `<module>_instanced` is for scenes with instances.
+//!
+//! What that costs is in `bench/kernels/README.md`.
 
-#[cfg(doc)]
 use lightmesh_layout::Structure;
 
 use super::DeviceScene;
 use crate::cuda::{Kernel, Runtime};
 
+/// The modules that exist without and with tests of what is cut out.
+const DOUBLED: &[&str] = &["occluder_lists", "pixel_samples", "primary_rays", "short_tests"];
+
+/// The modules that one kernel file is compiled to. Created by [`modules!`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Modules {
+    pub(crate) plain: &'static str,
+    /// For scenes in which triangles are cut out, or that have instances; if doubled.
+    pub(crate) cut_out: &'static str,
+    /// For scenes that have instances; if not.
+    pub(crate) instanced: &'static str,
+}
+
+impl Modules {
+    /// The module for `scene`.
+    fn of<R: Runtime>(self, scene: &DeviceScene<R>) -> &'static str {
+        let is_doubled = DOUBLED.contains(&self.plain);
+        match scene.structure {
+            Structure::InstancedBvh if !is_doubled => self.instanced,
+            _ if is_doubled && scene.cut_out => self.cut_out,
+            _ => self.plain,
+        }
+    }
+}
+
+/// The modules of a kernel file.
+macro_rules! modules {
+    ($module:literal) => {
+        $crate::gpu::Modules {
+            plain: $module,
+            cut_out: concat!($module, "_cut_out"),
+            instanced: concat!($module, "_instanced"),
+        }
+    };
+}
+
+pub(crate) use modules;
+
 /// The kernels that `KERNEL_PER_STRUCTURE` generates from one function, one per structure. Created by [`per_structure!`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PerStructure {
-    pub(crate) module: &'static str,
-    /// The same for scenes in which triangles are cut out, or that have instances.
-    pub(crate) cut_out_module: &'static str,
+    pub(crate) modules: Modules,
     /// In the order of [`Structure`].
     pub(crate) names: [&'static str; 4],
 }
@@ -19,31 +63,28 @@ pub(crate) struct PerStructure {
 impl PerStructure {
     /// The kernel that walks the structure of `scene`.
     pub(crate) fn of<R: Runtime>(self, scene: &DeviceScene<R>) -> Kernel {
-        let module = if scene.cut_out { self.cut_out_module } else { self.module };
-        Kernel { module, name: self.names[scene.structure as usize] }
+        Kernel { module: self.modules.of(scene), name: self.names[scene.structure as usize] }
     }
 }
 
-/// A kernel that looks up what rays see, in both modules.
+/// A kernel that looks up what rays see, in all modules of a kernel file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PerModule {
-    pub(crate) module: &'static str,
-    pub(crate) cut_out_module: &'static str,
+    pub(crate) modules: Modules,
     pub(crate) name: &'static str,
 }
 
 impl PerModule {
     /// The kernel for `scene`.
     pub(crate) fn of<R: Runtime>(self, scene: &DeviceScene<R>) -> Kernel {
-        let PerModule { module, cut_out_module, name } = self;
-        Kernel { module: if scene.cut_out { cut_out_module } else { module }, name }
+        Kernel { module: self.modules.of(scene), name: self.name }
     }
 }
 
-/// The kernel `name` of a module and of that for scenes in which triangles are cut out, or that have instances.
+/// The kernel `name` of a module and of its other one.
 macro_rules! per_module {
     ($module:literal, $name:literal) => {
-        $crate::gpu::PerModule { module: $module, cut_out_module: concat!($module, "_cut_out"), name: $name }
+        $crate::gpu::PerModule { modules: $crate::gpu::modules!($module), name: $name }
     };
 }
 
@@ -53,8 +94,7 @@ pub(crate) use per_module;
 macro_rules! per_structure {
     ($module:literal, $name:literal) => {
         $crate::gpu::PerStructure {
-            module: $module,
-            cut_out_module: concat!($module, "_cut_out"),
+            modules: $crate::gpu::modules!($module),
             names: lightmesh_layout::names_per_structure!($name),
         }
     };

@@ -21,6 +21,7 @@ use crate::error::RenderError;
 use crate::job::Job;
 use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
 use crate::sampling::disk_radius;
+use crate::settings::Acceleration;
 use crate::shading::ambient::AmbientLight;
 use crate::shading::tint::is_tinted;
 use crate::shading::{LightTargets, is_seen};
@@ -31,7 +32,7 @@ use crate::sync::locked;
 pub struct DeviceScene<R: Runtime> {
     pub(crate) record: Scene,
     pub(crate) structure: Structure,
-    /// Whether its kernels are in the modules with CUT_OUTS: any triangle is cut out, or there are instances.
+    /// Whether any triangle is cut out, or there are instances.
     pub(crate) cut_out: bool,
     /// The scene on the host.
     pub(crate) host: PreparedScene,
@@ -120,6 +121,16 @@ impl<R: Runtime> DeviceScene<R> {
     }
 }
 
+/// Fails if a device does not have the kernels of a structure.
+pub(crate) fn check_structure<R: Runtime>(runtime: &R, acceleration: &Acceleration) -> Result<(), RenderError> {
+    match acceleration {
+        Acceleration::BruteForce if !runtime.has_brute_force() => {
+            Err(RenderError::Structure { structure: acceleration.to_string(), device: runtime.name() })
+        }
+        _ => Ok(()),
+    }
+}
+
 impl<R: Runtime> Cuda<R> {
     /// The scene on this device. Its geometry is uploaded if it is not there yet.
     pub(crate) fn device_scene(&self, job: &Job, scene: &PreparedScene) -> Result<DeviceScene<R>, RenderError> {
@@ -157,6 +168,11 @@ impl<R: Runtime> Cuda<R> {
         let uploaded = job.wall_time(Stage::Upload, upload);
         job.work.end(job.observer, Stage::Upload);
         let copy = Arc::new(uploaded?);
+        if copy.structure == Structure::Bvh && matches!(scene.geometry.accelerator.form(), Form::Grid(_)) {
+            job.observer.note(
+                "some surfaces are cut out: grids on CUDA devices have none, so a BVH takes the grid's place; the image is the same",
+            );
+        }
         resident.keep(&scene.geometry, Arc::clone(&copy));
         Ok(copy)
     }
@@ -309,8 +325,12 @@ impl<R: Runtime> Upload<'_, R> {
                 record.bvh = Bvh { coverage, ..self.bvh(bvh)? };
                 Structure::Bvh
             }
+            Form::Grid(grid) if prepared.coverage.table().is_some() => {
+                record.bvh = Bvh { coverage, ..self.bvh(&accel::Bvh::new(&grid.held()))? };
+                Structure::Bvh
+            }
             Form::Grid(grid) => {
-                record.grid = Grid { coverage, ..self.grid(grid)? };
+                record.grid = self.grid(grid)?;
                 Structure::Grid
             }
             Form::BruteForce(all) => {
@@ -400,7 +420,6 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(Grid {
             cells: self.array("grid", grid.cells())?,
             triangles: self.triangles(grid.triangles())?,
-            coverage: Coverage::zeroed(),
             distances: self.array("distances of the grid", &grid.distances())?,
             origin: DVec3::from(origin.to_array()),
             size: vec3(size),
@@ -426,7 +445,6 @@ impl<R: Runtime> Upload<'_, R> {
 fn covered_by(coverage: Coverage, scene: Scene) -> Scene {
     Scene {
         bvh: Bvh { coverage, ..scene.bvh },
-        grid: Grid { coverage, ..scene.grid },
         brute_force: BruteForce { coverage, ..scene.brute_force },
         instanced: InstancedBvh { coverage, ..scene.instanced },
         coverage,

@@ -18,16 +18,16 @@ const PIXELS_PER_STEP: f32 = 4.0;
 /// Most light points per pixel.
 const POINTS_PER_PIXEL: f64 = 0.25;
 /// Factor by which a step grows if it leaves too many light points.
-const GROWTH: f32 = 1.05;
+pub const GROWTH: f32 = 1.05;
 /// Number of sampled pixels along the longer side of an image.
 const PROBES: u32 = 128;
 
 /// A sampled pixel.
-struct Probe {
+pub struct Probe {
     /// Distance to the next pixel's surface point, scene units.
-    spacing: f32,
+    pub spacing: f32,
     /// Area of surface that the pixel covers, square scene units.
-    area: f64,
+    pub area: f64,
 }
 
 /// The step for an image of `scene` in `view` with interpolation radius `radius` (in steps). It depends on the image alone,
@@ -52,7 +52,7 @@ pub(crate) fn auto_step(scene: &PreparedScene, view: &View, radius: f32) -> f32 
 }
 
 /// The first of `step`, 1.05·`step`, 1.05²·`step`, … that is not too fine. All before it are, so it is found by halving.
-fn raised(step: f32, is_too_fine: impl Fn(f32) -> bool) -> f32 {
+pub fn raised(step: f32, is_too_fine: impl Fn(f32) -> bool) -> f32 {
     let mut steps = vec![step];
     while is_too_fine(steps[steps.len() - 1]) {
         let more = steps.len();
@@ -68,7 +68,7 @@ fn raised(step: f32, is_too_fine: impl Fn(f32) -> bool) -> f32 {
 ///
 /// Over a surface of area A stands a layer of light points r high: A·r/h³ of them. A pixel whose surface is larger than its
 /// half-ball has the half-ball to itself: 2πR³/3.
-fn points_per_pixel(probes: &[Probe], step: f64, radius: f64) -> f64 {
+pub fn points_per_pixel(probes: &[Probe], step: f64, radius: f64) -> f64 {
     let half_ball = 2.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
     let expected = |probe: &Probe| (probe.area / (step * step) * radius).min(half_ball);
     probes.iter().map(expected).sum::<f64>() / probes.len() as f64
@@ -109,39 +109,8 @@ fn look(scene: &PreparedScene, rays: &[Ray], hits: &[Hit]) -> Option<Probe> {
 }
 
 /// Two significant digits, rounded up: a number that a person can type again.
-fn rounded(step: f32) -> f32 {
+pub fn rounded(step: f32) -> f32 {
     let unit = 10f64.powi(f64::from(step).log10().floor() as i32 - 1);
     // A step that has two digits already keeps them in spite of rounding.
     ((f64::from(step) / unit * (1.0 - 1e-6)).ceil() * unit) as f32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_are_rounded_up_to_two_digits() {
-        for (step, expected) in [(0.1234, 0.13), (1.0, 1.0), (9.91, 10.0), (432.0, 440.0), (1.5e-6, 1.5e-6)] {
-            let result = rounded(step);
-            assert!((result / expected - 1.0).abs() < 1e-6 && result >= step * 0.999_999, "{step} became {result}");
-        }
-    }
-
-    #[test]
-    fn a_step_is_raised_until_it_is_not_too_fine() {
-        for enough in [0.5, 1.0, 1.04, 1.2, 7.0, 1e6] {
-            let mut expected = 1.0_f32;
-            while expected < enough {
-                expected *= GROWTH;
-            }
-            assert_eq!(raised(1.0, |step| step < enough).to_bits(), expected.to_bits(), "{enough}");
-        }
-    }
-
-    #[test]
-    fn more_light_points_are_expected_of_a_finer_mesh() {
-        let probes: Vec<Probe> = (1..100).map(|i| Probe { spacing: 1.0, area: f64::from(i) * 0.01 }).collect();
-        let expected: Vec<f64> = [0.1, 0.2, 0.4, 0.8].iter().map(|&h| points_per_pixel(&probes, h, 2.1)).collect();
-        assert!(expected.is_sorted_by(|a, b| a > b), "{expected:?}");
-    }
 }

@@ -3,14 +3,14 @@
 //!
 //! A *cell* (i, j, k) is the cube whose lowest corner is *light point* (i, j, k): cells and points share one numbering.
 
-mod auto_step;
-mod bricks;
-mod cell_points;
+pub(crate) mod auto_step;
+pub(crate) mod bricks;
+pub(crate) mod cell_points;
 mod lattice;
 mod lattice_error;
 mod mesh;
 mod template;
-mod window;
+pub(crate) mod window;
 
 pub(crate) use auto_step::auto_step;
 pub use bricks::{BrickKey, BrickMap, PointKey, UsedPoints, brick_of, point_bit, point_key, point_of};

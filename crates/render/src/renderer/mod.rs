@@ -7,7 +7,7 @@ mod report;
 mod resolve;
 
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::Vec3;
@@ -24,11 +24,12 @@ use crate::data::picture::Picture;
 use crate::device::{Choice, Chosen, Device};
 use crate::error::RenderError;
 use crate::gathered::Sources;
+use crate::gpu;
 use crate::observer::{Observer, Unobserved};
 use crate::passes::{Baking, Passes};
 use crate::prepared::{Preparations, PreparedScene};
 use crate::probes::{GivenPoints, PointVisibility};
-use crate::settings::{Crop, Settings};
+use crate::settings::{Acceleration, Crop, Settings};
 use crate::shading::ids::catchers;
 use crate::stats::Stats;
 use resolve::Resolved;
@@ -101,8 +102,8 @@ pub struct Renderer {
 /// The backend in use.
 enum Engine {
     Cpu,
-    /// Images are rendered one after another: a device has one template in constant memory, and one set of counters.
-    Cuda(Box<Mutex<Cuda<Driver>>>),
+    /// A device and its backend. Images are rendered one after another: a device has one template in constant memory, and one set of counters.
+    Cuda(Arc<Driver>, Box<Mutex<Cuda<Driver>>>),
 }
 
 impl Renderer {
@@ -136,7 +137,7 @@ impl Renderer {
         let pool = pool.map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?;
         let engine = match choice.chosen {
             Chosen::Cpu => Engine::Cpu,
-            Chosen::Cuda(driver) => Engine::Cuda(Box::new(Mutex::new(Cuda::new(driver)))),
+            Chosen::Cuda(driver) => Engine::Cuda(Arc::clone(&driver), Box::new(Mutex::new(Cuda::new(driver)))),
         };
         Ok(Renderer { pool, engine, preparations: Preparations::default() })
     }
@@ -155,13 +156,15 @@ impl Renderer {
     ///
     /// # Errors
     /// [`RenderError::Geometry`] if the geometry is inconsistent, [`RenderError::BuildMemory`] if there is not enough memory,
-    /// [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was requested and cannot be built or read.
+    /// [`RenderError::Grid`] or [`RenderError::GridFile`] if a grid was requested and cannot be built or read, [`RenderError::Structure`] if
+    /// the device does not have the structure.
     pub fn prepare(
         &self,
         scene: &Scene,
         settings: &Settings,
         observer: &dyn Observer,
     ) -> Result<PreparedScene, RenderError> {
+        self.check_structure(&settings.acceleration)?;
         let budget = self.building_budget(settings);
         self.pool.install(|| self.preparations.prepare(scene, &settings.acceleration, budget, observer))
     }
@@ -179,6 +182,7 @@ impl Renderer {
         settings: &Settings,
         observer: &dyn Observer,
     ) -> Result<PreparedScene, RenderError> {
+        self.check_structure(&settings.acceleration)?;
         let (acceleration, budget) = (&settings.acceleration, self.building_budget(settings));
         self.pool.install(|| self.preparations.prepare_moved(before, scene, acceleration, budget, observer))
     }
@@ -196,12 +200,20 @@ impl Renderer {
         MeshCache::load(path, scene, self.building_budget(settings))
     }
 
+    /// Fails if the device does not have the structure; does not wait for an image that is being rendered.
+    fn check_structure(&self, acceleration: &Acceleration) -> Result<(), RenderError> {
+        match &self.engine {
+            Engine::Cpu => Cpu.check_structure(acceleration),
+            Engine::Cuda(device, _) => gpu::check_structure(&**device, acceleration),
+        }
+    }
+
     /// Memory for what is built on the host.
     fn building_budget(&self, settings: &Settings) -> Budget {
         match &self.engine {
             Engine::Cpu => Budget::new(settings.memory_limit),
             // The limit is that of the device's own memory.
-            Engine::Cuda(_) => Budget::default(),
+            Engine::Cuda(..) => Budget::default(),
         }
     }
 
@@ -218,7 +230,7 @@ impl Renderer {
     ) -> Result<Frame, RenderError> {
         self.pool.install(|| match &self.engine {
             Engine::Cpu => render_on(&Cpu, scene, settings, observer),
-            Engine::Cuda(cuda) => {
+            Engine::Cuda(_, cuda) => {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 render_on(&*cuda, scene, settings, observer)
             }
@@ -244,7 +256,7 @@ impl Renderer {
         let points = GivenPoints::new(scene, points, normals)?;
         self.pool.install(|| match &self.engine {
             Engine::Cpu => visibility_on(&Cpu, &points, settings, observer),
-            Engine::Cuda(cuda) => {
+            Engine::Cuda(_, cuda) => {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 visibility_on(&*cuda, &points, settings, observer)
             }
@@ -270,7 +282,7 @@ impl Renderer {
     ) -> Result<Frame, RenderError> {
         self.pool.install(|| match &self.engine {
             Engine::Cpu => render_on_with(&Cpu, cache.host(), scene, settings, observer),
-            Engine::Cuda(cuda) => {
+            Engine::Cuda(_, cuda) => {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 let kept = cache.device(cuda.pool().runtime().id());
                 render_on_with(&*cuda, kept, scene, settings, observer)
@@ -291,6 +303,7 @@ pub fn visibility_on<B: Backend>(
 ) -> Result<PointVisibility, RenderError> {
     let start = Instant::now();
     let scene = points.scene;
+    backend.check_structure(scene.geometry.acceleration())?;
     let resolved = Resolved::at_points(points, settings, observer)?;
     let job = resolved.job(observer);
     let run = Run::new(backend, &job, None);
@@ -336,6 +349,7 @@ fn picture_on<B: Backend>(
     observer: &dyn Observer,
 ) -> Result<Frame, RenderError> {
     let start = Instant::now();
+    backend.check_structure(scene.geometry.acceleration())?;
     // Where the camera sees nothing, a transparent image has nothing; mirrors still reflect the environment.
     let hidden = settings.transparent && scene.scene.lights.environment.is_some();
     let open = hidden.then(|| scene.with_lights(scene.scene.lights.clone().with_background(glam::Vec3::ZERO)));

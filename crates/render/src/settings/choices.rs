@@ -281,7 +281,7 @@ impl Filter {
     }
 
     /// Its width in pixels.
-    pub(crate) fn width(self) -> f64 {
+    pub fn width(self) -> f64 {
         match self {
             Filter::Box => 1.0,
             Filter::Gauss => 2.25,
@@ -327,12 +327,10 @@ impl AmbientSource {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            AmbientSource::Auto => {
-                "The mesh with a sky, an environment or lamps alone, unless --ambient is set; else a constant"
-            }
-            AmbientSource::Constant => "A constant, or what a sky gives to surfaces with nothing in between",
+            AmbientSource::Auto => "Mesh with sky, environment or only lamps; constant otherwise, or by --ambient",
+            AmbientSource::Constant => "The ambient intensity; under a sky by direction, without shadows",
             AmbientSource::Mesh => "Gathered from the sky and other surfaces, in place of --ambient",
-            AmbientSource::Rays => "Gathered by thousands of rays from each surface point: slow, the reference of mesh",
+            AmbientSource::Rays => "Gathered by thousands of rays at each surface point: slow, the reference",
         }
     }
 
@@ -360,32 +358,4 @@ pub enum Sharing {
     Unseen,
     /// Never: the reference. So it always is with more than 32 samples.
     Never,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_read_and_written() {
-        Mode::ALL.iter().for_each(|mode| assert_eq!(mode.to_string().parse(), Ok(*mode)));
-        Lookup::ALL.iter().for_each(|lookup| assert_eq!(lookup.to_string().parse(), Ok(*lookup)));
-        ShortTests::ALL.iter().for_each(|tests| assert_eq!(tests.to_string().parse(), Ok(*tests)));
-        ShadowTests::ALL.iter().for_each(|tests| assert_eq!(tests.to_string().parse(), Ok(*tests)));
-        Quality::ALL.iter().for_each(|quality| assert_eq!(quality.to_string().parse(), Ok(*quality)));
-        assert_eq!(
-            "soft".parse::<Mode>().unwrap_err().to_string(),
-            "there is no mode `soft`; available: light-mesh, ray-trace, area"
-        );
-    }
-
-    #[test]
-    fn steps_are_auto_or_a_number_above_0() {
-        for step in [Step::Auto, Step::Fixed(0.1), Step::Fixed(1e-7)] {
-            assert_eq!(step.to_string().parse(), Ok(step));
-        }
-        for text in ["", "0", "-1", "nan", "inf", "1e99", "1e-99", "Auto"] {
-            assert!(text.parse::<Step>().is_err(), "{text}");
-        }
-    }
 }

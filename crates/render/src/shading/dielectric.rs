@@ -81,14 +81,14 @@ pub(crate) fn left_straight_on(scene: &PreparedScene, glass: &Dielectric, ray: &
 }
 
 /// The unit direction of light that comes along the unit vector `direction` and goes on through a boundary; `None` if all of it is reflected.
-pub(crate) fn refracted(direction: Vec3, normal: Vec3, eta: f32) -> Option<Vec3> {
+pub fn refracted(direction: Vec3, normal: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = (-normal.dot(direction)).clamp(0.0, 1.0);
     let beyond = cosine_beyond(cosine, eta)?;
     Some((eta * direction + (eta * cosine - beyond) * normal).normalize())
 }
 
 /// The share of unpolarised light that a boundary reflects.
-fn fresnel(cosine: f32, eta: f32) -> f32 {
+pub fn fresnel(cosine: f32, eta: f32) -> f32 {
     let Some(beyond) = cosine_beyond(cosine, eta) else { return 1.0 };
     let across = (eta * cosine - beyond) / (eta * cosine + beyond);
     let along = (eta * beyond - cosine) / (eta * beyond + cosine);
@@ -102,7 +102,7 @@ fn cosine_beyond(cosine: f32, eta: f32) -> Option<f32> {
 }
 
 /// exp(−x) for x ≥ 0, to two units in the last place, with the same bits everywhere: the libraries of CPUs and GPUs differ.
-fn exp_of_minus(x: f32) -> f32 {
+pub fn exp_of_minus(x: f32) -> f32 {
     if x > LARGEST_EXPONENT {
         return 0.0;
     }
@@ -110,44 +110,4 @@ fn exp_of_minus(x: f32) -> f32 {
     let rest = (-x - whole * LN_2_HIGH) - whole * LN_2_LOW;
     let sum = ((((EXP_6 * rest + EXP_5) * rest + EXP_4) * rest + EXP_3) * rest + EXP_2) * rest * rest + rest + 1.0;
     sum * f32::from_bits(((whole as i32 + 127) as u32) << 23)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_exponential_is_that_of_the_library() {
-        for step in 0..8700 {
-            let x = step as f32 / 100.0;
-            let (found, expected) = (f64::from(exp_of_minus(x)), (-f64::from(x)).exp());
-            assert!(((found - expected) / expected).abs() < 3e-7, "{x}: {found}, not {expected}");
-        }
-        assert_eq!((exp_of_minus(0.0), exp_of_minus(200.0), exp_of_minus(f32::INFINITY)), (1.0, 0.0, 0.0));
-    }
-
-    #[test]
-    fn fresnels_equations_have_their_known_values() {
-        // Glass at normal incidence, at Brewster's angle (where all reflected light is polarised across), and at a grazing angle.
-        let (glass, brewster) = (1.0 / 1.5, 1.5_f32.atan().cos());
-        assert!((fresnel(1.0, glass) - 0.04).abs() < 1e-6);
-        assert!((fresnel(brewster, glass) - 0.5 * (5.0_f32 / 13.0).powi(2)).abs() < 1e-6);
-        assert!(fresnel(1e-4, glass) > 0.999);
-        // The way back, and beyond the critical angle of 41.8 degrees.
-        assert!((fresnel(1.0, 1.5) - 0.04).abs() < 1e-6);
-        assert_eq!(fresnel(42_f32.to_radians().cos(), 1.5), 1.0);
-        assert!(fresnel(41_f32.to_radians().cos(), 1.5) < 0.5);
-    }
-
-    #[test]
-    fn snells_law_holds_both_ways() {
-        for degrees in [0.0_f32, 10.0, 35.0, 60.0, 85.0] {
-            let (sine, cosine) = degrees.to_radians().sin_cos();
-            let down = Vec3::new(sine, -cosine, 0.0);
-            let within = refracted(down, Vec3::Y, 1.0 / 1.5).unwrap();
-            assert!((1.5 * within.x - sine).abs() < 1e-6 && within.is_normalized() && within.y < 0.0, "{within}");
-            assert!(refracted(within, Vec3::Y, 1.5).unwrap().abs_diff_eq(down, 2e-6), "{degrees}");
-        }
-        assert_eq!(refracted(Vec3::new(0.8, -0.6, 0.0), Vec3::Y, 1.5), None);
-    }
 }

@@ -34,21 +34,21 @@ use crate::textures::between;
 const DIRECTIONS: u32 = 24;
 
 /// How a surface point with facets is seen.
-pub(crate) struct Sight {
+pub struct Sight {
     /// The cosine of the angle between the normal and the direction to the eye.
-    pub(crate) cosine: f32,
+    pub cosine: f32,
     /// The range of mirrored directions over what a sample sees of the surface, an angle.
-    pub(crate) spread: f32,
+    pub spread: f32,
     /// Whether its mirror ray is followed.
-    pub(crate) followed: bool,
+    pub followed: bool,
 }
 
 /// What a surface point with facets does to light from one direction.
-pub(crate) struct Lobe {
+pub struct Lobe {
     /// f₀ and f₉₀.
     ends: [Vec3; 2],
     /// What repeated reflection adds, a factor.
-    gain: Vec3,
+    pub gain: Vec3,
     /// α².
     square: f32,
     /// The same for the part of the surface that is seen.
@@ -56,12 +56,12 @@ pub(crate) struct Lobe {
     /// N·E.
     cosine: f32,
     /// The share of reflections that mirror rays do not show.
-    pub(crate) unmirrored: f32,
+    pub unmirrored: f32,
 }
 
 impl Lobe {
     /// The lobe of a surface point whose coefficients are those of its material with its tint; they become those of its reflections.
-    pub(crate) fn new(facets: &Facets, coefficients: &mut Coefficients, sight: &Sight) -> Lobe {
+    pub fn new(facets: &Facets, coefficients: &mut Coefficients, sight: &Sight) -> Lobe {
         let Coefficients { kd: base, ks: layer, opacity, .. } = *coefficients;
         let cosine = sight.cosine.max(LEAST_VIEW_COSINE);
         // 1. and 2.
@@ -92,7 +92,7 @@ impl Lobe {
 
     /// π f for light from a direction, where half of the part of the light that it stands for is `part` wide: an angle.
     #[inline(always)]
-    pub(crate) fn toward(&self, normal: Vec3, view: Vec3, direction: Vec3, part: f32) -> Vec3 {
+    pub fn toward(&self, normal: Vec3, view: Vec3, direction: Vec3, part: f32) -> Vec3 {
         let sum = direction + view;
         let length = sum.length();
         if length == 0.0 {
@@ -189,6 +189,3 @@ fn integrated(roughness: f64, cosine: f64) -> [f32; 2] {
     }
     sums.map(|sum| (sum / f64::from(DIRECTIONS * DIRECTIONS)) as f32)
 }
-
-#[cfg(test)]
-mod tests;

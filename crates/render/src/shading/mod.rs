@@ -14,9 +14,7 @@ pub(crate) mod dielectric;
 pub(crate) mod environment;
 pub(crate) mod facets;
 pub(crate) mod ids;
-mod normal_map;
-#[cfg(test)]
-mod tests;
+pub(crate) mod normal_map;
 mod texel;
 pub(crate) mod tint;
 
@@ -291,7 +289,7 @@ pub(crate) fn luminance(color: Vec3) -> f32 {
 
 /// Intensity of `light` at `distance` along `direction` (from the surface to the light), falloff and cone included.
 #[inline(always)]
-fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
+pub fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
     let falloff = match (light.falloff, &light.kind) {
         (Falloff::None, _) => 1.0,
         (Falloff::InverseSquare, LightKind::Directional { .. }) => FRAC_1_PI,
@@ -303,7 +301,7 @@ fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
 /// The share of a light's strength along `direction`, from the surface to the light. A spot's falls as glTF recommends (KHR_lights_punctual, inner
 /// and outer cone angles), that of an emissive surface with the cosine.
 #[inline(always)]
-fn cone(light: &Light, direction: Vec3) -> f32 {
+pub fn cone(light: &Light, direction: Vec3) -> f32 {
     if let Some(normal) = light.surface {
         return (-direction.dot(normal)).max(0.0);
     }
@@ -315,8 +313,9 @@ fn cone(light: &Light, direction: Vec3) -> f32 {
 
 /// The points of each light from which its unshadowed light is computed: its centre, or several distributed over it. Those of a directional
 /// light are at distance 1 from the origin.
-pub(crate) struct LightTargets {
-    points: Vec<Vec<Vec3>>,
+pub struct LightTargets {
+    /// By light; empty for a light without a size.
+    pub points: Vec<Vec<Vec3>>,
     /// Whether mirror rays see each light, too.
     seen: Vec<bool>,
 }
@@ -339,7 +338,8 @@ pub(crate) fn is_seen(lights: &Lights, light: &Light) -> bool {
 }
 
 impl LightTargets {
-    pub(crate) fn new(lights: &Lights) -> LightTargets {
+    /// The points of these lights.
+    pub fn new(lights: &Lights) -> LightTargets {
         let pattern = Pattern::new(0, 0, 0);
         // In pairs on either side of the centre: what falls off linearly over the light is averaged exactly.
         let pair = |light: &Light, index: u32| {

@@ -29,15 +29,15 @@ use crate::textures::{Image, normals_of};
 
 /// What the shading of a surface with an image of normals needs besides its normal.
 #[derive(Clone, Copy)]
-pub(super) struct Relief {
+pub struct Relief {
     /// The normal without the image.
-    pub(super) smooth: Vec3,
+    pub smooth: Vec3,
 }
 
 impl Relief {
     /// The cosine of light along `direction`, which is `cosine` by the image. Where the light is lower than 6° above the surface without relief, what
     /// the relief adds fades to nothing at the horizon. Else whole bumps would be dark at once when the light sinks.
-    pub(super) fn softened(&self, direction: Vec3, cosine: f32) -> f32 {
+    pub fn softened(&self, direction: Vec3, cosine: f32) -> f32 {
         let plain = self.smooth.dot(direction);
         if cosine <= plain || plain >= LOW_LIGHT {
             return cosine;
@@ -162,7 +162,7 @@ fn shows_back(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> bool {
 
 /// The normal nearest to `normal` about which `view` is mirrored to directions above the surface with the geometric normal `facing`: half-way
 /// between both.
-pub(super) fn mirroring(normal: Vec3, facing: Vec3, view: Vec3) -> Vec3 {
+pub fn mirroring(normal: Vec3, facing: Vec3, view: Vec3) -> Vec3 {
     let direction = 2.0 * normal.dot(view) * normal - view;
     let least = LEAST_MIRRORED_COSINE.min(0.5 * facing.dot(view));
     let height = facing.dot(direction);
@@ -173,49 +173,4 @@ pub(super) fn mirroring(normal: Vec3, facing: Vec3, view: Vec3) -> Vec3 {
     let middle = raised / raised.length().max(f32::MIN_POSITIVE) + view;
     let square = middle.length_squared();
     if square > LEAST_SMOOTH_SQUARE { middle / square.sqrt() } else { facing }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn code_128_is_0_and_255_is_1() {
-        let decode = |code: u8| (255.0 * (f32::from(code) / 255.0) - NORMAL_CODE_ZERO) / NORMAL_CODE_ONE;
-        assert_eq!([128, 255].map(decode), [0.0, 1.0]);
-    }
-
-    /// Unit vectors of all directions above a horizon.
-    fn above() -> impl Iterator<Item = Vec3> + Clone {
-        (0..400).map(|index| {
-            let (height, turn) = ((index as f32 + 0.5) / 400.0, 2.4 * index as f32);
-            let radius = (1.0 - height * height).sqrt();
-            Vec3::new(radius * turn.cos(), height, radius * turn.sin())
-        })
-    }
-
-    #[test]
-    fn what_is_mirrored_leaves_the_surface() {
-        for (normal, view) in above().flat_map(|normal| above().map(move |view| (normal, view))) {
-            let turned = mirroring(normal, Vec3::Y, view);
-            let direction = 2.0 * turned.dot(view) * turned - view;
-            assert!(turned.is_normalized() && direction.y > 0.0, "{normal} {view}: {turned}");
-            let plain = 2.0 * normal.dot(view) * normal - view;
-            assert_eq!(turned == normal, plain.y >= LEAST_MIRRORED_COSINE.min(0.5 * view.y));
-            // A little more is turned a little more.
-            if (plain.y - LEAST_MIRRORED_COSINE).abs() < 1e-3 && normal.dot(view) > 0.1 {
-                assert!(turned.dot(normal) > 0.999, "{normal} {view}: {turned}");
-            }
-        }
-    }
-
-    #[test]
-    fn only_low_light_is_softened() {
-        let relief = Relief { smooth: Vec3::Y };
-        let low = |sine: f32| Vec3::new((1.0 - sine * sine).sqrt(), sine, 0.0);
-        assert_eq!(relief.softened(low(0.2), 0.7), 0.7);
-        assert_eq!(relief.softened(low(0.05), 0.04), 0.04, "leaning away");
-        assert!((relief.softened(low(0.05), 0.45) - 0.25).abs() < 1e-6, "half-way");
-        assert_eq!([0.0, -0.3].map(|sine| relief.softened(low(sine), 0.5)), [0.0; 2]);
-    }
 }

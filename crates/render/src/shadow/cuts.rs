@@ -15,7 +15,7 @@ use crate::simd::{Axes, LANES};
 
 /// What is cut out of the triangles of eight lanes.
 #[derive(Clone, Copy)]
-pub(crate) struct Cuts<'a> {
+pub struct Cuts<'a> {
     coverage: &'a Coverage,
     /// The number of each lane's triangle; 0 if it is opaque.
     numbers: [u32; LANES],
@@ -24,7 +24,7 @@ pub(crate) struct Cuts<'a> {
 impl<'a> Cuts<'a> {
     /// One triangle in all lanes; `None` if it is opaque.
     #[inline(always)]
-    pub(crate) fn splat(coverage: &'a Coverage, number: u32) -> Option<Cuts<'a>> {
+    pub fn splat(coverage: &'a Coverage, number: u32) -> Option<Cuts<'a>> {
         (number != 0).then_some(Cuts { coverage, numbers: [number; LANES] })
     }
 

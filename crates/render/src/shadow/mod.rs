@@ -8,8 +8,6 @@ pub(crate) mod rows;
 pub(crate) mod sample_ray;
 pub(crate) mod sight;
 pub(crate) mod terminator;
-#[cfg(test)]
-mod tests;
 
 use glam::Vec3;
 use lightmesh_layout::constants::HORIZON_SAMPLES;
@@ -124,7 +122,7 @@ pub(crate) fn each_shadow_ray(point: &SurfacePoint, targets: &Targets, samples: 
 /// An area light may straddle the horizon. Then χ is its share above the horizon, and bounds the visibility: light points higher up
 /// see more of the light than the surface can.
 #[inline(always)]
-pub(crate) fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> f32 {
+pub fn above_horizon(point: &SurfacePoint, light: &Light, reach: f32) -> f32 {
     let height = point.normal.dot(light_center(light, point.origin, reach) - point.origin);
     if height.abs() >= size(light, reach) {
         return if height > 0.0 { 1.0 } else { 0.0 };

@@ -163,10 +163,10 @@ DEVICE bool center_above_horizon(const SurfacePoint &point, const Sight &sight) 
 // Whether a function is certainly negative on the whole emitter; positive if not `outer`.
 DEVICE bool never(const Linear &f, bool outer) { return (outer ? f.start : -f.start) < -range_of(f); }
 
-// A triangle by its parts, and where it is cut out. The number of its opacities, 0 if it is opaque, is only read with CUT_OUTS.
+// A triangle by its parts, and where it is cut out. The number of its opacities, 0 if it is opaque, is only read with a coverage.
 struct Hiding {
     const float4 *parts;
-    const Coverage &coverage;
+    const Coverage *coverage;
     const unsigned *cut;
 };
 
@@ -243,13 +243,13 @@ DEVICE void hide(const SurfacePoint &point, const Sight &sight, const Hiding &hi
     } else {
         set_bits<WORDS, 3>(bounds, table, hidden);
     }
-    if (CUT_OUTS) {
+    if (hiding.coverage != nullptr) {
         Samples<WORDS> all;
         UNROLL
         for (unsigned word = 0; word < WORDS; ++word)
             all.bits[word] = matters ? hidden[word] & seen[word] : 0;
         const Lines from = {point.origin, sight.center, sight.along, sight.across};
-        all = stopped_samples<WORDS>(hiding.coverage, *hiding.cut, corners_of(triangle), from, table, all);
+        all = stopped_samples<WORDS>(*hiding.coverage, *hiding.cut, corners_of(triangle), from, table, all);
         UNROLL
         for (unsigned word = 0; word < WORDS; ++word)
             hidden[word] = all.bits[word];
@@ -272,7 +272,7 @@ DEVICE bool hides_center(const SurfacePoint &point, const Sight &sight, const Hi
         most = fmaxf(most, f);
     }
     const bool hides = own.matters && (own.volume > 0.0f ? least >= 0.0f : most <= 0.0f);
-    if (!CUT_OUTS || !hides || *hiding.cut == 0)
+    if (!hides || hiding.coverage == nullptr || *hiding.cut == 0)
         return hides;
-    return stops_cut(hiding.coverage, *hiding.cut, corners_of(triangle), point.origin, sight.center);
+    return stops_cut(*hiding.coverage, *hiding.cut, corners_of(triangle), point.origin, sight.center);
 }

@@ -38,7 +38,7 @@ pub(crate) type Bits<S> = [u32x8<S>; MOST_WORDS as usize];
 
 /// Surface points and their sights of a light, one in each lane.
 #[derive(Clone, Copy)]
-pub(crate) struct Sights<S: Simd> {
+pub struct Sights<S: Simd> {
     origin: Axes<S>,
     normal: Axes<S>,
     center: Axes<S>,
@@ -53,7 +53,7 @@ pub(crate) type Offsets<S> = [f32x8<S>; MOST_ROWS as usize];
 impl<S: Simd> Sights<S> {
     /// The same in all lanes.
     #[inline(always)]
-    pub(crate) fn splat(simd: S, point: &SurfacePoint, sight: &Sight) -> Sights<S> {
+    pub fn splat(simd: S, point: &SurfacePoint, sight: &Sight) -> Sights<S> {
         Sights {
             origin: splat(simd, point.origin),
             normal: splat(simd, point.normal),
@@ -137,7 +137,7 @@ impl<S: Simd> Sights<S> {
 
     /// Clears the bits of the samples that a triangle hides, in `lanes`.
     #[inline(always)]
-    pub(crate) fn hide(
+    pub fn hide(
         &self,
         simd: S,
         (triangle, cuts): ([Axes<S>; 3], Option<Cuts>),

@@ -31,15 +31,17 @@ const WORD: u32 = u32::BITS;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Numbers of samples whose rows are kept: an image needs up to three, and finding them takes as long as a wave of rays in a small image.
-const MOST_KNOWN: usize = 8;
+pub const MOST_KNOWN: usize = 8;
 /// The rows that were found last.
-static KNOWN: Mutex<Vec<(u32, Arc<Rows>)>> = Mutex::new(Vec::new());
+pub static KNOWN: Mutex<Vec<(u32, Arc<Rows>)>> = Mutex::new(Vec::new());
 
 /// The rows of samples of each shape. Large numbers of samples are split into several sets, to be tested one after another.
 #[derive(Clone, Debug)]
-pub(crate) struct Rows {
-    pub(crate) disc: Vec<SampleRows>,
-    pub(crate) rectangle: Vec<SampleRows>,
+pub struct Rows {
+    /// Samples of a disc.
+    pub disc: Vec<SampleRows>,
+    /// Samples of a rectangle.
+    pub rectangle: Vec<SampleRows>,
 }
 
 /// One row.
@@ -56,7 +58,7 @@ struct Row {
 
 impl Rows {
     /// Those of the lights that rays are aimed at.
-    pub(crate) fn of(aim: &Aim) -> Arc<Rows> {
+    pub fn of(aim: &Aim) -> Arc<Rows> {
         let samples = match aim {
             Aim::Middle => 1,
             Aim::Extent(sampling) => sampling.samples,
@@ -72,7 +74,7 @@ impl Rows {
     }
 
     /// `samples` samples, at least 1.
-    fn new(samples: u32) -> Rows {
+    pub fn new(samples: u32) -> Rows {
         Rows { disc: disc(samples), rectangle: rectangle(samples) }
     }
 }
@@ -203,81 +205,4 @@ fn set(words: &[Vec<Row>], common: SampleRows) -> SampleRows {
     }
     set.rows = number as u32;
     set
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::job::Sampling;
-
-    const NUMBERS: [u32; 12] = [1, 2, 3, 5, 16, 17, 64, 225, 256, 300, 1000, 65535];
-
-    #[test]
-    fn rows_that_are_kept_are_those_of_their_number() {
-        let of = |samples| Rows::of(&Aim::Extent(Sampling { samples, seed: 0, spread: true }));
-        let count = |rows: &Rows| rows.disc.iter().flat_map(|set| set.count).sum::<u32>();
-        for samples in (1..=20).chain(1..=20) {
-            assert_eq!(count(&of(samples)), samples);
-        }
-        assert!(locked(&KNOWN).len() <= MOST_KNOWN);
-    }
-
-    #[test]
-    fn every_sample_has_a_bit() {
-        for samples in NUMBERS {
-            let Rows { disc, rectangle, .. } = Rows::new(samples);
-            let total = |sets: &[SampleRows]| sets.iter().flat_map(|set| set.count).sum::<u32>();
-            assert_eq!(total(&disc), samples);
-            let [first, ..] = rectangle[..] else { panic!("no rows") };
-            let count = rectangle[0].count[0];
-            assert_eq!(total(&rectangle) - count, samples + first.surplus, "{samples}");
-            assert!(first.surplus < first.lines, "{samples}: {}", first.surplus);
-            for set in disc.iter().chain(&rectangle) {
-                let mut first = 0;
-                for word in 0..set.words as usize {
-                    let rows = first..set.ends[word] as usize;
-                    let mut bits = 0u32;
-                    for row in rows {
-                        let own = ((1u64 << set.count[row]) - 1) << set.place[row];
-                        assert!(own <= u64::from(u32::MAX) && bits & own as u32 == 0 && set.count[row] <= MOST_OF_ROW);
-                        bits |= own as u32;
-                    }
-                    first = set.ends[word] as usize;
-                }
-                assert_eq!(first, set.rows as usize);
-            }
-            for (sets, what) in [(&disc, "disc"), (&rectangle, "rectangle")] {
-                if samples <= 256 {
-                    assert_eq!(sets.len(), 1, "{samples} samples of a {what}");
-                }
-            }
-            let edges = |choose: fn(&SampleRows) -> u32| rectangle.iter().filter(|set| choose(set) < MOST_ROWS).count();
-            assert_eq!((edges(|set| set.entering), edges(|set| set.leaving)), (1, 1), "{samples}");
-        }
-    }
-
-    #[test]
-    fn the_usual_numbers_have_few_words() {
-        for (samples, words) in [(16, [1, 1]), (64, [2, 3]), (256, [10, 9])] {
-            let Rows { disc, rectangle, .. } = Rows::new(samples);
-            assert_eq!([disc[0].words, rectangle[0].words], words, "{samples} samples");
-        }
-        let mut counts = Rows::new(64).disc[0].count;
-        counts.sort_unstable_by(|a, b| b.cmp(a));
-        assert_eq!(counts[..9], [10, 10, 9, 9, 8, 8, 5, 5, 0]);
-    }
-
-    #[test]
-    fn rows_halve_their_strips() {
-        for samples in [1, 16, 225] {
-            let set = &Rows::new(samples).disc[0];
-            let rows = 0..set.rows as usize;
-            // The mean height of the samples is that of the disc, and so is the mean square, nearly.
-            let mean = |f: fn(f32) -> f32| {
-                rows.clone().map(|row| set.count[row] as f32 * f(set.y[row])).sum::<f32>() / samples as f32
-            };
-            assert!(mean(|y| y).abs() < 1e-5, "{samples}");
-            assert!((mean(|y| y * y) - 0.25).abs() < if samples > 100 { 0.005 } else { 0.26 }, "{samples}");
-        }
-    }
 }

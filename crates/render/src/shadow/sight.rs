@@ -257,18 +257,21 @@ fn shadow_of_disc(normal: Vec3) -> Vec3 {
 
 /// A light as one surface point sees it: samples are at `center + x · along + y · across`, seen from the point and scaled.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sight {
-    pub(crate) center: Vec3,
-    pub(crate) along: Vec3,
-    pub(crate) across: Vec3,
+pub struct Sight {
+    /// Its centre.
+    pub center: Vec3,
+    /// From the centre to the place with x = 1: half of its width along the rows.
+    pub along: Vec3,
+    /// From the centre to the place with y = 1: half of its width across the rows.
+    pub across: Vec3,
     /// The scale over the parameter at which segments to the light end: less than 1, to spare what lies at the light.
-    pub(crate) end: f32,
+    pub end: f32,
     /// By how much of their distance samples are shifted along their rows; in [0, 1).
-    pub(crate) shift: f32,
+    pub shift: f32,
     /// The part of the last line that lies inside of a rectangle; in (0, 1].
-    pub(crate) inside: f32,
+    pub inside: f32,
     /// Selects the samples that are left out where a row has too many.
-    pub(crate) choice: u32,
+    pub choice: u32,
 }
 
 impl Sight {
@@ -334,7 +337,7 @@ impl Sight {
 
     /// The place of x = 0 in a row of samples.
     #[inline(always)]
-    pub(crate) fn offset(&self, rows: &SampleRows, row: usize) -> f32 {
+    pub fn offset(&self, rows: &SampleRows, row: usize) -> f32 {
         rows.half[row] - self.shift_of(rows, row)
     }
 

@@ -33,7 +33,7 @@ impl HostWave<'_> {
 
 /// A surface point P that casts shadow rays.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ShadowPoint {
+pub struct ShadowPoint {
     /// P on its triangle.
     flat: SurfacePoint,
     /// The way from P to the curved surface, and the normal there.
@@ -48,7 +48,7 @@ impl ShadowPoint {
 
     /// A point at `hit` on a triangle of a mesh.
     #[inline(always)]
-    pub(crate) fn new(point: SurfacePoint, mesh: &Mesh, hit: &Hit, triangle: &Triangle) -> ShadowPoint {
+    pub fn new(point: SurfacePoint, mesh: &Mesh, hit: &Hit, triangle: &Triangle) -> ShadowPoint {
         if mesh.normals.is_empty() {
             return ShadowPoint::flat(point);
         }
@@ -60,13 +60,13 @@ impl ShadowPoint {
 
     /// Whether it depends on the light where shadow rays start.
     #[inline(always)]
-    pub(crate) fn is_curved(&self) -> bool {
+    pub fn is_curved(&self) -> bool {
         self.curved.is_some()
     }
 
     /// The point from which `light` is looked for.
     #[inline(always)]
-    pub(crate) fn toward(&self, light: &Light, geometry: &PreparedGeometry) -> SurfacePoint {
+    pub fn toward(&self, light: &Light, geometry: &PreparedGeometry) -> SurfacePoint {
         let flat = self.flat;
         let Some((lift, normal)) = self.curved else { return flat };
         let reach = geometry.reach(flat.origin);
@@ -119,6 +119,3 @@ fn curved(
     }
     (deepest > 0.0).then_some((lift, normal))
 }
-
-#[cfg(test)]
-mod tests;

@@ -4,7 +4,7 @@ use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 
 /// Lanes of a vector; four vectors make one word of a mask.
-pub(crate) const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 // No `map` over arrays and no iterators in vector code: unless they are inlined, vectors are passed through memory.
 
@@ -16,8 +16,9 @@ pub(crate) fn load<S: Simd>(simd: S, lanes: &[f32], first: usize) -> f32x8<S> {
     f32x8::from_slice(simd, &lanes[first..first + LANES])
 }
 
+/// One vector in all lanes.
 #[inline(always)]
-pub(crate) fn splat<S: Simd>(simd: S, v: Vec3) -> Axes<S> {
+pub fn splat<S: Simd>(simd: S, v: Vec3) -> Axes<S> {
     [f32x8::splat(simd, v.x), f32x8::splat(simd, v.y), f32x8::splat(simd, v.z)]
 }
 

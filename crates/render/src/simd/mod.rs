@@ -4,7 +4,7 @@
 //! these two are rare, AVX-512 hardly helps, and each costs a minute of compile time. All versions give the same bits, because
 //! no operations are fused.
 
-mod lanes;
+pub(crate) mod lanes;
 
 pub(crate) use lanes::{
     Axes, LANES, cross, difference, dot, dot_along_x, fused_cross, fused_dot, load, scaled, splat, sum, sum_of_lanes,
@@ -12,6 +12,8 @@ pub(crate) use lanes::{
 
 /// Evaluates an expression with `$simd` bound to the best token for `$level`. The expression must call `#[simd]` or
 /// `#[inline(always)]` functions only.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! dispatch {
     ($level:expr, $simd:ident => $work:expr) => {{
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -1,5 +1,8 @@
-//! Exact area shadows by occluder lists: the triangles that can hide a light are found once for surface points that lie close together. The
-//! same bits as [area mode](super::area).
+//! Exact area shadows by occluder lists, the default: the triangles that can hide a light are found once for surface points that lie close
+//! together. The same bits as [area mode](super::area).
+//!
+//! This is the place to start reading: `visibility` below is the whole technique. `stages/items/` groups the surface points, and
+//! `stages/occluder_lists/` finds the triangles between a group and a light and clears the samples that they hide. `docs/method/` explains why.
 
 use lightmesh_layout::constants::{MOST_STARTS, TILE};
 

@@ -7,7 +7,7 @@ macro_rules! technique_table {
     ($use:ident) => {
         $use! {
             modes {
-                /// The light mesh method.
+                /// Soft shadows, by the chosen lookup.
                 LightMesh = "light-mesh",
                 /// One hard shadow ray per light and pixel.
                 RayTrace = "ray-trace",
@@ -15,11 +15,11 @@ macro_rules! technique_table {
                 Area = "area",
             }
             lookups {
-                /// Exact area shadows: the triangles that can hide a light, found once for neighbouring surface points.
+                /// Exact area shadows, by triangles found once for neighbouring surface points.
                 Lists = "lists",
                 /// Formula (3), the thesis: the mean over the light points of a half-ball.
                 HalfBall = "half-ball",
-                /// One shadow ray per light and pixel, all samples where a neighbourhood of 5x5 pixels disagrees.
+                /// One shadow ray per light and pixel, all samples where 5x5 pixels disagree.
                 Adaptive = "adaptive",
             }
             techniques {

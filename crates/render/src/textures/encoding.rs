@@ -5,7 +5,7 @@ use lightmesh_image::Transfer;
 
 /// What the numbers of an image say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Encoding {
+pub enum Encoding {
     /// Colours, encoded as sRGB.
     Color,
     /// Data, such as directions, as they are.
@@ -27,7 +27,7 @@ impl Encoding {
 
     /// The linear values of a texel.
     #[inline(always)]
-    pub(crate) fn linear(self, [r, g, b, _]: [u8; 4]) -> Vec3 {
+    pub fn linear(self, [r, g, b, _]: [u8; 4]) -> Vec3 {
         Vec3::new(self.decode(r), self.decode(g), self.decode(b))
     }
 }

@@ -8,10 +8,10 @@
 //! Levels are built once, with the acceleration structure ([`MipLevels`]). A footprint, the ellipse of the texture that a sample of a pixel
 //! sees ([`footprint`](crate::footprint)), is averaged by [`filtered`]. Twin of the lookups: `lookup.cuh`.
 
-mod encoding;
-mod levels;
-mod lookup;
-mod neighbours;
+pub(crate) mod encoding;
+pub(crate) mod levels;
+pub(crate) mod lookup;
+pub(crate) mod neighbours;
 
 pub(crate) use encoding::Encoding;
 pub(crate) use levels::{AllLevels, Level, MipLevels};
@@ -22,10 +22,13 @@ use lightmesh_scene::{Geometry, Material, Texture, TextureUse};
 
 /// An image of a material that can be looked up.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Image<'s> {
-    pub(crate) uses: TextureUse,
-    pub(crate) texture: &'s Texture,
-    pub(crate) encoding: Encoding,
+pub struct Image<'s> {
+    /// Which texture it is, and how it is laid out.
+    pub uses: TextureUse,
+    /// Its texels.
+    pub texture: &'s Texture,
+    /// What its texels mean.
+    pub encoding: Encoding,
 }
 
 impl<'s> Image<'s> {

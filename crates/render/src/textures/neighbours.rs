@@ -4,7 +4,7 @@ use lightmesh_scene::Wrap;
 
 /// The two texels of a row or column of `size` whose centres are on either side of `place`, and the fraction of the way to the
 /// second.
-pub(crate) fn neighbours(place: f32, size: u32, wrap: Wrap) -> ([u32; 2], f32) {
+pub fn neighbours(place: f32, size: u32, wrap: Wrap) -> ([u32; 2], f32) {
     // 1. Into the image.
     let inside = match wrap {
         Wrap::Repeat => place - place.floor(),

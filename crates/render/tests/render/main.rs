@@ -23,6 +23,7 @@ mod mattes;
 mod mirrors;
 mod normal_maps;
 mod partial;
+mod parts;
 mod placement;
 mod points;
 mod progress;

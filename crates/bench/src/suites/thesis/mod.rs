@@ -5,7 +5,7 @@
 //! | `timings` | scene, lights, size, mode, step, radius, device, threads | `thesis_cpu_seconds`, `thesis_gpu_seconds`; `faster_than_thesis_cpu` and `…_gpu`: speed-up over the thesis |
 //! | `table 1` | size, device, threads | `collect_seconds`, `total_seconds`, `share` of the list and mesh steps; the thesis' values as `thesis_…` |
 //! | `table 2` | scene, step, size, radius | `light_points`, `thesis_light_points` |
-//! | `figure 1` | mode, lookup, samples | `rmse`, `mean_flip` relative to 225 samples |
+//! | `figure 1` | mode, lookup, samples | `rmse`, `mean_flip` relative to 225 samples of each light; one of each pixel, as everywhere |
 //! | `figure 11` | lights, mode, device, threads | |
 //! | `figure 11, break-even` | size, device, threads | `predicted_lights`, `measured_lights`, the model's `short_test_seconds` and `long_test_seconds`; `method_seconds` and `hard_seconds`, fixed, and the time per light as `…_per_light` |
 //! | `figures 12-15` | radius | `rmse`, `mean_flip` relative to area shadows with 225 samples |
@@ -72,8 +72,8 @@ fn thesis_engines(plan: &Plan) -> Result<Vec<Engine>, BenchError> {
 /// Notes for readers of the results.
 fn notes(plan: &Plan, engines: &[Engine]) -> Vec<String> {
     let mut notes = vec![
-        "Scenes are modelled on those of the thesis: with the same counts and sizes, but not the same shapes. Weight 1 and lookup \
-         half-ball, as in the thesis; rays use the BVH instead of the thesis' grid."
+        "Scenes are modelled on those of the thesis: with the same counts and sizes, but not the same shapes. Weight 1, lookup \
+         half-ball and one sample of a pixel, as in the thesis; rays use the BVH instead of the thesis' grid."
             .to_owned(),
         "Host memory is the peak of the whole process, scene included; if the system cannot reset it for each frame, it is the \
          peak so far."

@@ -40,11 +40,13 @@ pub(super) fn scene_with_lights(name: &str, lights: u32) -> String {
     format!("builtin:{name}?lights={lights}")
 }
 
-/// Settings of an image with `side` pixels per side, as in the thesis: w = 1.
+/// Settings of an image with `side` pixels per side, as in the thesis: w = 1, and one sample of each pixel. Lists and adaptive rays
+/// would take several by default, which neither time nor error of the other modes could be compared with.
 fn settings(side: u32, mode: Mode) -> Settings {
     Settings::default()
         .with_size([side, side])
         .with_mode(mode)
+        .with_aa(1)
         .with_weight(Weight::Constant)
         .with_lookup(Lookup::HalfBall)
 }

@@ -107,6 +107,11 @@ fn pictures_refer_to_the_reference() {
     assert!(results.pictures.iter().all(|picture| picture.png.starts_with(b"\x89PNG")));
     let radii = of(&results, "figures 12-15");
     assert!(radii.iter().all(|row| row.values["mean_flip"] > 0.0 && row.values["rmse"] > 0.0));
+    // Each image has one sample of a pixel. With as many samples of a light, lists then have the reference's bits.
+    let figure = of(&results, "figure 1");
+    assert!(figure.iter().all(|row| row.values["rays"] == row.values["pixels"]), "{figure:?}");
+    let lists = figure.iter().find(|row| word(row, "lookup") == "lists").unwrap();
+    assert_eq!([lists.values["mean_flip"], lists.values["rmse"]], [0.0; 2]);
     assert!(results.quick && results.notes.iter().any(|note| note.starts_with("Short version: ")));
 }
 

@@ -1,25 +1,15 @@
 //! What is beside and below the colours: a scale with hours, and what the image shows.
 
-use std::convert::Infallible;
-
-use embedded_graphics::Drawable;
-use embedded_graphics::Pixel;
-use embedded_graphics::draw_target::DrawTarget;
-use embedded_graphics::geometry::{OriginDimensions, Point, Size};
-use embedded_graphics::mono_font::ascii::{FONT_6X10, FONT_10X20};
-use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
-use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
-use embedded_graphics::text::{Baseline, Text};
-
 use super::colors::viridis;
+use super::letters::{LARGE, Letters, SMALL};
 
 /// Paper and ink.
 const WHITE: [u8; 3] = [255; 3];
-const BLACK: Rgb888 = Rgb888::BLACK;
+const BLACK: [u8; 3] = [0; 3];
 /// Hours between marks, of which the first that leaves room for its labels is taken.
 const MARKS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 12.0];
 /// Shorter images get small letters.
-const SMALL: usize = 360;
+const SHORT: usize = 360;
 /// Scales are not shorter, however low the image.
 const SHORTEST: usize = 80;
 
@@ -30,15 +20,15 @@ pub(super) struct Canvas {
     codes: Vec<[u8; 3]>,
     /// Pixels per dot of a letter.
     scale: usize,
-    font: &'static MonoFont<'static>,
+    letters: Letters,
 }
 
 impl Canvas {
     /// The codes row by row.
     pub(super) fn new(width: usize, codes: Vec<[u8; 3]>) -> Canvas {
         let height = codes.len() / width;
-        let font = if width.min(height) < SMALL { &FONT_6X10 } else { &FONT_10X20 };
-        Canvas { width, height, codes, scale: (width.min(height) / 1200).max(1), font }
+        let letters = if width.min(height) < SHORT { SMALL } else { LARGE };
+        Canvas { width, height, codes, scale: (width.min(height) / 1200).max(1), letters }
     }
 
     /// With a scale for values from 0 to `most` on its right, and `caption` below.
@@ -85,15 +75,14 @@ impl Canvas {
         }
         for hours in labels {
             let row = row_of(hours);
-            self.fill([left + bar, row.min(bottom - 1)], [high / 3, self.scale], [0; 3]);
+            self.fill([left + bar, row.min(bottom - 1)], [high / 3, self.scale], BLACK);
             self.text(&number(hours), [left + bar + high / 2, row - high / 2]);
         }
     }
 
     /// Width and height of a letter in pixels.
     fn letter(&self) -> [usize; 2] {
-        let Size { width, height } = self.font.character_size;
-        [width as usize * self.scale, height as usize * self.scale]
+        [self.letters.width * self.scale, self.letters.height * self.scale]
     }
 
     fn columns(&self, text: &str) -> usize {
@@ -115,42 +104,18 @@ impl Canvas {
         }
     }
 
-    /// Writes a line from its upper left corner on.
+    /// Writes a line from its upper left corner on, as far as there is room.
     fn text(&mut self, text: &str, [left, top]: [usize; 2]) {
-        let style = MonoTextStyle::new(self.font, BLACK);
-        let mut letters = Letters { left, top, canvas: self };
-        let Ok(_) = Text::with_baseline(text, Point::zero(), style, Baseline::Top).draw(&mut letters);
-    }
-}
-
-/// Where letters are drawn.
-struct Letters<'a> {
-    left: usize,
-    top: usize,
-    canvas: &'a mut Canvas,
-}
-
-impl OriginDimensions for Letters<'_> {
-    fn size(&self) -> Size {
-        let scale = self.canvas.scale as u32;
-        Size::new(self.canvas.width as u32 / scale, self.canvas.height as u32 / scale)
-    }
-}
-
-impl DrawTarget for Letters<'_> {
-    type Color = Rgb888;
-    type Error = Infallible;
-
-    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb888>>>(&mut self, pixels: I) -> Result<(), Infallible> {
-        let scale = self.canvas.scale;
-        for Pixel(Point { x, y }, color) in pixels {
-            let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { continue };
-            let place = [self.left + x * scale, self.top + y * scale];
-            if place[0] < self.canvas.width {
-                self.canvas.fill(place, [scale; 2], [color.r(), color.g(), color.b()]);
+        let ([wide, _], scale) = (self.letter(), self.scale);
+        for (number, letter) in text.chars().enumerate() {
+            let dots: Vec<[usize; 2]> = self.letters.dots(letter).collect();
+            for [x, y] in dots {
+                let place = [left + number * wide + x * scale, top + y * scale];
+                if place[0] < self.width {
+                    self.fill(place, [scale; 2], BLACK);
+                }
             }
         }
-        Ok(())
     }
 }
 

@@ -10,6 +10,7 @@
 
 mod colors;
 mod legend;
+mod letters;
 mod picture;
 mod pixel_area;
 mod table;

@@ -1,5 +1,5 @@
-//! Values that the authors' C++ implementation gives, version 1.2 in the crate `nv-flip` 0.1.2, and within 1e-7 the one of the Python package
-//! `flip-evaluator` 1.7, both with 67 pixels per degree.
+//! Known values: what version 1.2 of the authors' C++ gives (the crate `nv-flip` 0.1.2) at 67 pixels per degree. Their Python package
+//! `flip-evaluator` 1.7 gives the same to 1e-7.
 
 use super::flip;
 

@@ -9,8 +9,6 @@
 
 mod cluster;
 mod reinsert;
-#[cfg(test)]
-mod tests;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -30,15 +28,15 @@ use crate::accel::distinct::distinct;
 use crate::accel::{Coverage, Instanced, ShapeTree, Triangle};
 
 /// Most levels: of the binary tree without its leaves, and so of the wide one.
-const LEVELS: usize = BVH_STACK as usize;
+pub const LEVELS: usize = BVH_STACK as usize;
 /// Most triangles in a leaf: the node format has room for three.
 const LEAF_SIZE: u32 = 3;
 
 /// What a build does.
 #[derive(Clone, Copy, Debug, Default)]
-struct Work {
+pub struct Work {
     /// Boxes that others are compared with.
-    boxes: u64,
+    pub boxes: u64,
 }
 
 pub(super) fn build(triangles: &[Triangle]) -> Bvh {
@@ -132,7 +130,8 @@ fn level(triangles: &[Triangle]) -> (Vec<Node>, Vec<Triangle>) {
     (nodes, triangles)
 }
 
-fn tree(triangles: &[Triangle], work: &mut Work) -> CwBvh {
+/// The tree over triangles, and how much work it was.
+pub fn tree(triangles: &[Triangle], work: &mut Work) -> CwBvh {
     if triangles.is_empty() {
         return CwBvh::default();
     }
@@ -149,7 +148,7 @@ fn bounds(triangle: &Triangle) -> Aabb {
 }
 
 /// One child of a node.
-pub(super) enum Child {
+pub enum Child {
     /// Index of its node.
     Inner(usize),
     /// Its triangles.
@@ -157,7 +156,7 @@ pub(super) enum Child {
 }
 
 /// The occupied slots of a node.
-pub(super) fn children(node: &Node) -> impl Iterator<Item = (usize, Child)> + use<> {
+pub fn children(node: &Node) -> impl Iterator<Item = (usize, Child)> + use<> {
     let node = *node;
     (0..8).filter(move |&slot| node.child_meta[slot] != 0).map(move |slot| {
         if node.imask >> slot & 1 == 1 {
@@ -220,11 +219,13 @@ fn enclose_axis(node: &mut Node, axis: usize, boxes: &[(usize, Bounds)], origin:
     }
 }
 
-pub(super) fn extent(node: &Node) -> DVec3 {
+/// By how much a step of a node's boxes moves, on each axis.
+pub fn extent(node: &Node) -> DVec3 {
     node.compute_extent().as_dvec3()
 }
 
-pub(super) fn planes(node: &Node, axis: usize) -> ([u8; 8], [u8; 8]) {
+/// The lower and the upper planes of the boxes of a node's children on an axis, in steps.
+pub fn planes(node: &Node, axis: usize) -> ([u8; 8], [u8; 8]) {
     match axis {
         0 => (node.child_min_x, node.child_max_x),
         1 => (node.child_min_y, node.child_max_y),
@@ -242,7 +243,7 @@ fn set_planes(node: &mut Node, axis: usize, slot: usize, low: u8, high: u8) {
 }
 
 /// Number of levels.
-fn depth(nodes: &[Node]) -> usize {
+pub fn depth(nodes: &[Node]) -> usize {
     let mut depths = vec![1; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         for (_, child) in children(node) {

@@ -1,4 +1,4 @@
-//! How good a tree is.
+//! The cost of a tree by the surface area heuristic.
 
 use super::build::{Child, children, extent, planes};
 use super::{Bvh, Node};

@@ -6,7 +6,7 @@
 //! * `walk`: the traversal by a ray; `search`: by a region. Nodes and triangles are plain arrays, which devices copy.
 //! * `packet`: the traversal by many coherent rays at once.
 
-mod build;
+pub(crate) mod build;
 mod cost;
 mod packet;
 mod search;
@@ -56,12 +56,8 @@ impl Bvh {
 
     /// The same over instances, too: `stored` are all triangles that are stored, of which those of shapes are in coordinates of their own. If
     /// `known` holds the same shapes, their trees are taken from there.
-    pub(crate) fn with_instances(
-        own: &[Triangle],
-        stored: &[Triangle],
-        instances: &[Instance],
-        known: Option<&Bvh>,
-    ) -> Bvh {
+    #[doc(hidden)]
+    pub fn with_instances(own: &[Triangle], stored: &[Triangle], instances: &[Instance], known: Option<&Bvh>) -> Bvh {
         build::build_levels(own, stored, instances, known)
     }
 
@@ -81,27 +77,31 @@ impl Bvh {
     }
 
     /// Its instances.
-    pub(crate) fn instances(&self) -> &Arc<[Instanced]> {
+    #[doc(hidden)]
+    pub fn instances(&self) -> &Arc<[Instanced]> {
         &self.instances
     }
 
     /// The opacities of triangles that are cut out.
-    pub(crate) fn with_coverage(self, coverage: &Coverage) -> Bvh {
+    #[doc(hidden)]
+    pub fn with_coverage(self, coverage: &Coverage) -> Bvh {
         Bvh { coverage: coverage.clone(), ..self }
     }
 
     /// These opacities.
-    pub(crate) fn coverage(&self) -> &Coverage {
+    #[doc(hidden)]
+    pub fn coverage(&self) -> &Coverage {
         &self.coverage
     }
 
     /// The nodes, root first.
-    pub(crate) fn nodes(&self) -> &[Node] {
+    #[doc(hidden)]
+    pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
     /// The triangles in leaf order.
-    pub(crate) fn triangles(&self) -> &[Triangle] {
+    pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 
@@ -130,8 +130,8 @@ impl Bvh {
     }
 
     /// The same tree traversed at another SIMD level; every level gives the same bits.
-    #[cfg(test)]
-    pub(crate) fn at_level(mut self, level: Level) -> Bvh {
+    #[doc(hidden)]
+    pub fn at_level(mut self, level: Level) -> Bvh {
         self.level = level;
         self
     }

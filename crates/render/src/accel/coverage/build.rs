@@ -24,7 +24,7 @@ impl Coverage {
     ///
     /// # Errors
     /// The number of the texture whose opacities do not fit into the budget.
-    pub(crate) fn of(geometry: &Geometry, budget: Budget) -> Result<(Coverage, Vec<u32>), (usize, Short)> {
+    pub fn of(geometry: &Geometry, budget: Budget) -> Result<(Coverage, Vec<u32>), (usize, Short)> {
         let mut masks = Masks { geometry, budget, known: HashMap::new(), least: Vec::new(), table: Table::default() };
         let mut of_materials = Vec::new();
         for material in &geometry.materials {

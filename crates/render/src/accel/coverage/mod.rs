@@ -1,5 +1,5 @@
-//! Where surfaces are that are cut out, leaves and fences on a few triangles, and how opaque are those that light goes through. Twin of the
-//! decisions: `coverage.cuh`.
+//! Alpha: at which points a triangle that is cut out, such as a leaf or a fence, has a surface, and how opaque one is that lets light through.
+//! Twin of the decisions: `coverage.cuh`.
 //!
 //! ```text
 //! opacity at (u, v) = mask(A · uv) × opacity of the corners,      a surface where that is at least the cutoff
@@ -13,8 +13,6 @@
 //! where the ray of the [watertight test](super::triangle::RayShear) meets the triangle: [`Coverage::stops`].
 
 mod build;
-#[cfg(test)]
-mod tests;
 
 use std::sync::Arc;
 
@@ -39,7 +37,7 @@ pub struct Coverage {
 
 /// What is known of all triangles that are cut out.
 #[derive(Debug, Default)]
-pub(crate) struct Table {
+pub struct Table {
     /// By number, from 1.
     pub(crate) triangles: Arc<[CutTriangle]>,
     pub(crate) masks: Vec<Mask>,
@@ -65,7 +63,7 @@ pub(crate) struct Mask {
 
 impl Coverage {
     /// Everything that is cut out, if anything is.
-    pub(crate) fn table(&self) -> Option<&Table> {
+    pub fn table(&self) -> Option<&Table> {
         self.table.as_deref()
     }
 
@@ -95,7 +93,7 @@ impl Coverage {
     }
 
     /// Bytes on the heap.
-    pub(crate) fn memory(&self) -> usize {
+    pub fn memory(&self) -> usize {
         self.table().map_or(0, |table| {
             size_of_val(&*table.triangles) + table.planes.iter().map(|plane| plane.len()).sum::<usize>()
         })
@@ -110,7 +108,7 @@ impl Coverage {
     /// Whether there is a surface where the segment from `origin` along `direction` meets the plane of `triangle`. Only asked where another
     /// test says that it meets the triangle itself; next to its edge the two may differ, and there is none where this one says no.
     #[inline(always)]
-    pub(crate) fn stops(&self, triangle: &Triangle, origin: Vec3, direction: Vec3) -> bool {
+    pub fn stops(&self, triangle: &Triangle, origin: Vec3, direction: Vec3) -> bool {
         triangle.cut() == 0 || self.stops_cut(triangle, origin, direction)
     }
 
@@ -129,7 +127,7 @@ impl Coverage {
 
     /// Whether the cut-out triangle number `cut` has a surface at these barycentric weights of its second and third corner.
     #[inline(never)]
-    fn covers(&self, cut: u32, u: f32, v: f32) -> bool {
+    pub fn covers(&self, cut: u32, u: f32, v: f32) -> bool {
         let Some(table) = self.table() else { return true };
         // NaN is nothing.
         table.value(cut, u, v) >= table.mask_of(cut).limit
@@ -189,6 +187,6 @@ impl Mask {
 }
 
 /// From `a` to `b`. Of whole numbers up to 255, and of such means of them, it is no less than the smallest: their differences are exact.
-fn between(a: f32, b: f32, share: f32) -> f32 {
+pub fn between(a: f32, b: f32, share: f32) -> f32 {
     a + share * (b - a)
 }

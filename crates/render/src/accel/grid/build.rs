@@ -266,6 +266,3 @@ impl Writer {
         Ok(())
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,4 +1,4 @@
-//! Saved grids.
+//! Grid files, of `lightmesh grid`.
 //!
 //! A file is a header, the flat form, and for each stored triangle its position in the list that the grid was built from; the
 //! triangles themselves come from the scene. All numbers are little-endian:
@@ -35,8 +35,10 @@ pub use fault::{GridFault, GridFileError, GridSaveError};
 
 const MAGIC: [u8; 8] = *b"LM GRID\0";
 const VERSION: u32 = 1;
-const HEADER: usize = 40;
-const TRAILER: usize = 8;
+/// Bytes of the header.
+pub const HEADER: usize = 40;
+/// Bytes of the trailer.
+pub const TRAILER: usize = 8;
 
 impl Grid {
     /// Writes the grid to a file, whole or not at all.
@@ -123,7 +125,7 @@ fn read(path: &Path, triangles: &[Triangle]) -> Result<Grid, GridFault> {
 }
 
 /// Decodes a grid from all bytes of a file, whose number is the one in the header.
-fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<Grid, GridFault> {
+pub fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<Grid, GridFault> {
     // 3. Is it what was saved for these triangles?
     let geometry = geometry_hash(triangles);
     if header.built_from as usize != triangles.len() || header.geometry != geometry {
@@ -161,7 +163,8 @@ fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<Grid,
     })
 }
 
-struct Header {
+/// The header of a file.
+pub struct Header {
     built_from: u32,
     geometry: u64,
     cells: u64,
@@ -169,7 +172,8 @@ struct Header {
 }
 
 impl Header {
-    fn parse(bytes: &[u8]) -> Result<Header, GridFault> {
+    /// The header at the beginning of a file.
+    pub fn parse(bytes: &[u8]) -> Result<Header, GridFault> {
         let magic = bytes.get(..MAGIC.len()).ok_or(GridFault::NotAGrid)?;
         if magic != MAGIC {
             return Err(GridFault::NotAGrid);
@@ -191,7 +195,8 @@ impl Header {
         })
     }
 
-    fn file_length(&self) -> u128 {
+    /// Bytes of the whole file.
+    pub fn file_length(&self) -> u128 {
         (HEADER + TRAILER) as u128 + 4 * (u128::from(self.cells) + u128::from(self.references))
     }
 }
@@ -261,6 +266,3 @@ impl Check<'_> {
         self.cells.get(self.cell + ahead).copied().ok_or(GridFault::Corrupted("a cell lies beyond the end"))
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -17,11 +17,11 @@
 //! * `distance`: how far each cell is from the nearest non-empty one, for walks on devices.
 
 mod build;
-mod distance;
-mod file;
+pub(crate) mod distance;
+pub(crate) mod file;
 mod hash;
 mod lattice;
-pub(super) mod overlap;
+pub(crate) mod overlap;
 mod search;
 mod walk;
 
@@ -125,7 +125,8 @@ impl Grid {
     }
 
     /// The opacities of triangles that are cut out.
-    pub(crate) fn with_coverage(self, coverage: &Coverage) -> Grid {
+    #[doc(hidden)]
+    pub fn with_coverage(self, coverage: &Coverage) -> Grid {
         Grid { coverage: coverage.clone(), ..self }
     }
 
@@ -141,17 +142,26 @@ impl Grid {
     }
 
     /// The flat nested form.
-    pub(crate) fn cells(&self) -> &[i32] {
+    pub fn cells(&self) -> &[i32] {
         &self.cells
     }
 
     /// The triangles of all cells.
-    pub(crate) fn triangles(&self) -> &[Triangle] {
+    pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 
+    /// The triangles that it holds, each once, in the order of the list that it was built from.
+    pub(crate) fn held(&self) -> Vec<Triangle> {
+        let mut held: Vec<(u32, &Triangle)> = self.sources.iter().copied().zip(self.triangles.iter()).collect();
+        held.sort_unstable_by_key(|(source, _)| *source);
+        held.dedup_by_key(|(source, _)| *source);
+        held.into_iter().map(|(_, triangle)| *triangle).collect()
+    }
+
     /// Lowest corner of the outer grid, and edges of its cells.
-    pub(crate) fn geometry(&self) -> (glam::DVec3, glam::Vec3) {
+    #[doc(hidden)]
+    pub fn geometry(&self) -> (glam::DVec3, glam::Vec3) {
         (self.lattice.origin, self.lattice.size)
     }
 
@@ -160,14 +170,20 @@ impl Grid {
         self.margin
     }
 
+    /// For each of its triangles, where that was among those it was built over.
+    #[doc(hidden)]
+    pub fn sources(&self) -> &[u32] {
+        &self.sources
+    }
+
     /// Centre and radius of the sphere of interest.
     pub(crate) fn approach(&self) -> (glam::Vec3, f32) {
         self.approach.parts()
     }
 
     /// The lowest corner of a cell of the outer grid.
-    #[cfg(test)]
-    pub(super) fn corner(&self, cell: [u32; 3]) -> glam::Vec3 {
+    #[doc(hidden)]
+    pub fn corner(&self, cell: [u32; 3]) -> glam::Vec3 {
         self.lattice.corner(cell.into()).as_vec3()
     }
 

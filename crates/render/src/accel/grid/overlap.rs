@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 /// Whether the triangle meets the closed box around `center` with half edges `half`. Touching counts.
-pub(in crate::accel) fn triangle_meets_box(corners: [Vec3; 3], center: DVec3, half: DVec3) -> bool {
+pub fn triangle_meets_box(corners: [Vec3; 3], center: DVec3, half: DVec3) -> bool {
     let [a, b, c] = corners.map(|corner| corner.as_dvec3() - center);
     // 1. The axes of the box.
     if a.min(b).min(c).cmpgt(half).any() || a.max(b).max(c).cmplt(-half).any() {
@@ -24,23 +24,4 @@ pub(in crate::accel) fn triangle_meets_box(corners: [Vec3; 3], center: DVec3, ha
             a.min(b).min(c) <= reach && a.max(b).max(c) >= -reach
         })
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn meets(corners: [[f32; 3]; 3]) -> bool {
-        triangle_meets_box(corners.map(Vec3::from), DVec3::ZERO, DVec3::ONE)
-    }
-
-    #[test]
-    fn each_kind_of_axis_separates() {
-        assert!(!meets([[2.0, 0.0, 0.0], [3.0, 0.0, 0.0], [2.0, 1.0, 0.0]]), "box axis");
-        assert!(!meets([[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]]), "normal");
-        assert!(!meets([[2.2, 0.0, 0.0], [0.0, 2.2, 0.0], [2.2, 2.2, 0.5]]), "edge");
-        assert!(meets([[2.9, 0.0, 0.0], [0.0, 2.9, 0.0], [0.0, 0.0, 2.9]]), "cuts off a corner");
-        assert!(meets([[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [0.0, 9.0, 0.0]]), "no corner inside");
-        assert!(meets([[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0]]), "touches");
-    }
 }

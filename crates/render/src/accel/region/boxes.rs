@@ -1,4 +1,4 @@
-//! Eight boxes at once.
+//! Eight boxes in SIMD lanes, to be tested against a region at once.
 
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;

@@ -13,7 +13,8 @@
 //! | | for each light: |
 //! | 1, 4 each | its kind, and the numbers that describe it |
 //! | 4, 8 | if it has a size: samples and seed; 0 samples otherwise |
-//! | 8 each | the light points whose value is known, by brick |
+//! | 1 | 1 if those light points have a known value that have one of the light before; 0 otherwise |
+//! | 8 each | without that: the light points whose value is known, by brick |
 //! | 8 each | without a size: those that see the light, by brick |
 //! | 1 or 2 each | with a size: the rays that reached the light, of each known light point; one byte up to 255 samples |
 //! | 1 | 1 if there is [gathered light](super::gathered), which follows; 0 otherwise |
@@ -61,14 +62,20 @@ fn write_points(output: &mut impl Write, sections: &[Section]) -> io::Result<()>
             write_difference(output, brick - before)?;
             before = brick;
         }
-        stored.columns.iter().try_for_each(|column| write_column(output, column))?;
+        let before = std::iter::once(None).chain(stored.columns.iter().map(Some));
+        before.zip(&stored.columns).try_for_each(|(before, column)| write_column(output, before, column))?;
     }
     Ok(())
 }
 
-fn write_column(output: &mut impl Write, column: &StoredColumn) -> io::Result<()> {
+fn write_column(output: &mut impl Write, before: Option<&StoredColumn>, column: &StoredColumn) -> io::Result<()> {
     write_seen(output, &column.seen)?;
-    longs(output, &column.known)?;
+    // Most often, all lights were asked at the same places: too far back for the compression to notice.
+    let same = before.is_some_and(|before| before.known == column.known);
+    output.write_all(&[same.into()])?;
+    if !same {
+        longs(output, &column.known)?;
+    }
     match &column.answers {
         StoredAnswers::Bits(words) => longs(output, words),
         StoredAnswers::Shares(shares) if column.seen.samples() <= SMALL => {
@@ -146,7 +153,7 @@ pub(super) fn read(packed: &[u8], length: u64, budget: Budget, geometries: &[u64
     let packed = input.inner.get_mut();
     packed.set_limit(1);
     match packed.read(&mut [0]) {
-        Ok(0) if is_read => Ok(content),
+        Ok(0) if is_read && pack::rest(packed.get_ref()) == 0 => Ok(content),
         _ => Err(MeshFault::Damaged("it holds more than it says")),
     }
 }
@@ -161,7 +168,10 @@ impl<R: Read> Input<R> {
             return Err(MeshFault::Damaged("it has more lights than a scene"));
         }
         let bricks = self.bricks(bricks)?;
-        let columns = (0..lights).map(|_| self.column(bricks.len())).collect::<Result<_, _>>()?;
+        let mut columns = Vec::new();
+        for _ in 0..lights {
+            columns.push(self.column(bricks.len(), columns.last())?);
+        }
         let stored = Stored { ages: vec![0; bricks.len()], bricks, columns };
         Ok(Section { geometry, places: Places { anchor, step, number }, stored })
     }
@@ -182,9 +192,16 @@ impl<R: Read> Input<R> {
         Ok(bricks)
     }
 
-    fn column(&mut self, bricks: usize) -> Result<StoredColumn, MeshFault> {
+    fn column(&mut self, bricks: usize, before: Option<&StoredColumn>) -> Result<StoredColumn, MeshFault> {
         let seen = self.seen()?;
-        let known = self.numbers(bricks as u64, u64::from_le_bytes)?;
+        let known = match (self.bytes()?, before) {
+            ([0], _) => self.numbers(bricks as u64, u64::from_le_bytes)?,
+            ([1], Some(before)) => {
+                self.hold(&Vec::<u64>::new(), bricks)?;
+                before.known.clone()
+            }
+            _ => return Err(MeshFault::Damaged("a light has the values of no light")),
+        };
         let answers = if seen.is_share() {
             let count = known.iter().map(|known| u64::from(known.count_ones())).sum();
             let samples = seen.samples();

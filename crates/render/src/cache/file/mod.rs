@@ -1,7 +1,7 @@
 //! Saved light points and gathered light: what light points see of each light, and what surfaces gather, for later runs and for other
 //! devices.
 //!
-//! A file is a header, compressed content (Zstandard), and a trailer. All numbers are little-endian:
+//! A file is a header, compressed content (deflate, RFC 1951), and a trailer. All numbers are little-endian:
 //!
 //! | bytes | what |
 //! |---|---|
@@ -36,12 +36,15 @@ use super::Content;
 use crate::prepared::PreparedScene;
 pub use fault::{MeshFault, MeshFileError, MeshSaveError};
 
-const MAGIC: [u8; 8] = *b"LM MESH\0";
+/// How files begin.
+pub const MAGIC: [u8; 8] = *b"LM MESH\0";
 /// To be raised with every change of the format, of what decides what light points see, and
 /// of how light is gathered.
-const VERSION: u32 = 2;
-const HEADER: usize = 24;
-const TRAILER: usize = 16;
+const VERSION: u32 = 3;
+/// Bytes of the header.
+pub const HEADER: usize = 24;
+/// Bytes of the trailer.
+pub const TRAILER: usize = 16;
 
 /// What a saved mesh holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,7 +68,7 @@ pub(super) fn save(path: &Path, scene: &PreparedScene, content: Content) -> Resu
 }
 
 /// Writes what is known of a scene's geometry, whole or not at all.
-fn write(path: &Path, scene: &PreparedScene, content: &Content) -> Result<u64, MeshSaveError> {
+pub fn write(path: &Path, scene: &PreparedScene, content: &Content) -> Result<u64, MeshSaveError> {
     let file = Output::to(path)?;
     write_to(file, scene, content).map_err(|reason| MeshSaveError::Write { path: path.into(), reason })
 }
@@ -76,10 +79,7 @@ fn write_to(mut file: Output, scene: &PreparedScene, content: &Content) -> io::R
     output.write_all(&VERSION.to_le_bytes())?;
     output.write_all(&(scene.geometry.triangles.stored().len() as u32).to_le_bytes())?;
     output.write_all(&scene.geometry.hash().to_le_bytes())?;
-    let mut counted = Hashed { inner: pack::encoder(&mut output)?, hash: Xxh3::new(), bytes: 0 };
-    content::write(&mut counted, content)?;
-    let length = counted.bytes;
-    pack::finish(counted.inner)?;
+    let length = write_packed(&mut output, content)?;
     output.write_all(&length.to_le_bytes())?;
     let hash = output.hash.digest();
     output.write_all(&hash.to_le_bytes())?;
@@ -88,6 +88,14 @@ fn write_to(mut file: Output, scene: &PreparedScene, content: &Content) -> io::R
     drop(output);
     file.commit()?;
     Ok(bytes)
+}
+
+/// Returns how many bytes there were before compression.
+fn write_packed(output: &mut impl Write, content: &Content) -> io::Result<u64> {
+    let mut counted = Hashed { inner: pack::encoder(output)?, hash: Xxh3::new(), bytes: 0 };
+    content::write(&mut counted, content)?;
+    pack::finish(counted.inner)?;
+    Ok(counted.bytes)
 }
 
 /// A writer that hashes and counts everything written.
@@ -111,7 +119,7 @@ impl<W: Write> Write for Hashed<W> {
 }
 
 /// Reads what was saved of a scene's geometry.
-pub(super) fn load(path: &Path, scene: &PreparedScene, budget: Budget) -> Result<Content, MeshFileError> {
+pub fn load(path: &Path, scene: &PreparedScene, budget: Budget) -> Result<Content, MeshFileError> {
     let portion = |wanted| Portion { wanted, budget };
     let bytes = |wanted| read(path, portion(wanted)).map_err(unread);
     // What is no mesh is not read.
@@ -127,7 +135,7 @@ fn unread(error: ReadError) -> MeshFault {
 }
 
 /// Decodes all bytes of a file.
-fn decode(bytes: &[u8], scene: &PreparedScene, budget: Budget) -> Result<Content, MeshFault> {
+pub fn decode(bytes: &[u8], scene: &PreparedScene, budget: Budget) -> Result<Content, MeshFault> {
     // 1. Is it what was saved for this geometry?
     let header = Header::parse(bytes)?;
     let Some((content, hash)) = bytes.split_last_chunk::<8>() else { return Err(MeshFault::Damaged(CUT_OFF)) };
@@ -175,6 +183,3 @@ impl Header {
 fn short(needed: u64, budget: Budget) -> Result<(), MeshFault> {
     budget.check(needed).map_err(|short: Short| MeshFault::Memory(short))
 }
-
-#[cfg(all(test, feature = "mesh-file"))]
-mod tests;

@@ -17,7 +17,7 @@ const FIRST: [&str; 4] = ["cuInit", "cuDriverGetVersion", "cuGetErrorName", "cuG
 
 /// Why CUDA cannot be used at all.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum Unavailable {
+pub enum Unavailable {
     /// NVIDIA has no driver for this operating system.
     #[error("CUDA is not available for {0}")]
     NoPlatform(&'static str),
@@ -62,7 +62,7 @@ pub(crate) enum Unavailable {
 
 impl Unavailable {
     /// Why, and what to do. A machine without a driver is an ordinary one, so that the short message says no more.
-    pub(crate) fn explained(&self) -> String {
+    pub fn explained(&self) -> String {
         match self {
             Unavailable::NoLibrary { library, needed } => format!(
                 "{self} ({library} was not found): install version {needed} or newer; a container must be started with \
@@ -73,7 +73,7 @@ impl Unavailable {
     }
 
     /// Whether the machine may have no CUDA device at all, so that there is nothing to mend.
-    pub(crate) fn is_ordinary(&self) -> bool {
+    pub fn is_ordinary(&self) -> bool {
         match self {
             Unavailable::NoPlatform(_) => true,
             Unavailable::NoLibrary { .. } => !has_nvidia_card(),
@@ -124,7 +124,7 @@ impl Library {
 
 impl Gpu {
     /// Why the kernels cannot run on this device; `None` if they can.
-    pub(crate) fn refusal(&self, needs: Needs) -> Option<String> {
+    pub fn refusal(&self, needs: Needs) -> Option<String> {
         let [has, wants] = [self.capability, needs.capability].map(capability);
         (self.capability < needs.capability).then(|| {
             format!("compute capability {has}, but {wants} is needed (GeForce RTX 20, Quadro RTX, T4 or newer)")
@@ -184,50 +184,4 @@ fn device(number: u32) -> Result<Gpu, DriverError> {
         pools: pools != 0,
         handle,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const NEEDS: Needs = Needs { cuda: Version { major: 12, minor: 4 }, driver: 550, capability: 75 };
-
-    #[test]
-    fn what_is_missing_comes_with_what_to_do() {
-        let messages = [
-            (Unavailable::NoPlatform("macos"), ["CUDA is not available", "macos"]),
-            (Unavailable::NoLibrary { library: "libcuda.so.1", needed: 550 }, ["libcuda.so.1", "install version 550"]),
-            (Unavailable::NotADriver { symbol: "cuInit", needed: 550 }, ["lacks cuInit", "version 550"]),
-            (
-                Unavailable::TooOld { version: Version { major: 11, minor: 4 }, needs: NEEDS },
-                ["supports CUDA 11.4, but CUDA 12.4 is needed", "driver 550 or newer"],
-            ),
-            (Unavailable::Hidden("-1".into()), ["CUDA_VISIBLE_DEVICES is \"-1\"", "unset it"]),
-            (Unavailable::NoDevice, ["finds no CUDA device", "nvidia-smi"]),
-            (Unavailable::Failed("unknown".into()), ["does not start (unknown)", "nvidia-smi"]),
-        ];
-        for (reason, parts) in messages {
-            let text = reason.explained();
-            assert!(parts.iter().all(|part| text.contains(part)), "{text}");
-        }
-    }
-
-    #[test]
-    fn a_driver_that_is_missing_is_said_in_a_few_words() {
-        let missing = Unavailable::NoLibrary { library: "libcuda.so.1", needed: 550 };
-        assert_eq!(missing.to_string(), "NVIDIA's driver is not installed");
-        assert!(
-            missing.explained().starts_with("NVIDIA's driver is not installed (libcuda.so.1 was not found): install")
-        );
-        assert!(Unavailable::NoPlatform("macos").is_ordinary() && !Unavailable::NoDevice.is_ordinary());
-    }
-
-    #[test]
-    fn devices_before_turing_are_refused() {
-        let gpu =
-            |capability| Gpu { number: 0, name: "Tesla".into(), capability, memory: 1 << 34, pools: true, handle: 0 };
-        assert!(gpu(70).refusal(NEEDS).unwrap().starts_with("compute capability 7.0, but 7.5 is needed"));
-        assert_eq!(gpu(75).refusal(NEEDS), None);
-        assert_eq!(gpu(120).refusal(NEEDS), None);
-    }
 }

@@ -1,4 +1,4 @@
-//! Points in the stream.
+//! Events in the stream: synchronisation and clocks.
 
 use std::sync::Arc;
 

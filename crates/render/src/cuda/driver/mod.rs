@@ -8,12 +8,12 @@
 
 mod context;
 mod fault;
-mod library;
+pub(crate) mod library;
 mod mark;
 mod memory;
 mod module;
-mod open;
-mod ptx;
+pub(crate) mod open;
+pub(crate) mod ptx;
 mod transfer;
 
 use std::ffi::c_void;
@@ -86,6 +86,10 @@ impl Runtime for Driver {
 
     fn id(&self) -> u64 {
         self.id
+    }
+
+    fn has_brute_force(&self) -> bool {
+        false
     }
 
     fn free_memory(&self) -> Option<u64> {

@@ -112,19 +112,18 @@ impl Modules {
     }
 
     fn module(&self, loaded: &mut Loaded, name: &str) -> Result<CUmodule, Fault> {
-        let entry = MODULES.iter().find(|(module, _)| *module == name);
-        let &(name, ptx) = entry.ok_or_else(|| Fault::Failed(format!("unknown module {name}")))?;
+        let entry = MODULES.iter().find(|module| module.name == name);
+        let ptx = entry.ok_or_else(|| Fault::Failed(format!("unknown module {name}")))?;
         if let Some(&module) = loaded.modules.get(name) {
             return Ok(module);
         }
-        let module = self.compile(name, ptx)?;
-        loaded.modules.insert(name, module);
+        let module = self.compile(name, &ptx.unpacked().map_err(Fault::Failed)?)?;
+        loaded.modules.insert(ptx.name, module);
         Ok(module)
     }
 
-    /// Passes PTX to the driver, which compiles it or uses the result that it cached the last time.
-    fn compile(&self, name: &str, ptx: &str) -> Result<CUmodule, Fault> {
-        let image = text(ptx)?;
+    /// Passes PTX, zero-terminated, to the driver, which compiles it or uses the result that it cached the last time.
+    fn compile(&self, name: &str, image: &[u8]) -> Result<CUmodule, Fault> {
         let mut log = vec![0_u8; LOG];
         let mut options = [CUjit_option::CU_JIT_ERROR_LOG_BUFFER, CUjit_option::CU_JIT_ERROR_LOG_BUFFER_SIZE_BYTES];
         let mut values: [*mut c_void; 2] = [log.as_mut_ptr().cast(), ptr::without_provenance_mut(LOG)];
@@ -162,5 +161,5 @@ impl Drop for Modules {
 
 /// Text for the driver, which ends at the first zero.
 fn text(text: &str) -> Result<CString, Fault> {
-    CString::new(text).map_err(|_| Fault::Failed("a name or PTX contains a zero byte".to_owned()))
+    CString::new(text).map_err(|_| Fault::Failed("a name contains a zero byte".to_owned()))
 }

@@ -52,31 +52,11 @@ fn first(library: &Library) -> Result<Arc<Driver>, String> {
     Err(reasons.join("; "))
 }
 
-fn no_such_device(devices: &[Gpu], visible: Option<String>) -> String {
+/// What there is instead of a device that is not there.
+pub fn no_such_device(devices: &[Gpu], visible: Option<String>) -> String {
     let there: Vec<String> = devices.iter().map(|gpu| format!("cuda:{} ({})", gpu.number, gpu.name)).collect();
     let numbering = visible.map_or_else(String::new, |value| {
         format!("; CUDA_VISIBLE_DEVICES is \"{value}\", which chooses and numbers them")
     });
     format!("there is no such device, only {}{numbering}", there.join(", "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn gpu(number: u32, capability: u32) -> Gpu {
-        Gpu { number, name: "Fake".into(), capability, memory: 1 << 30, pools: false, handle: 0 }
-    }
-
-    #[test]
-    fn a_wrong_number_is_answered_with_what_there_is() {
-        let devices = [gpu(0, 75), gpu(1, 90)];
-        let text = no_such_device(&devices, None);
-        assert_eq!(text, "there is no such device, only cuda:0 (Fake), cuda:1 (Fake)");
-        let text = no_such_device(&devices[..1], Some("3".into()));
-        assert!(
-            text.ends_with("only cuda:0 (Fake); CUDA_VISIBLE_DEVICES is \"3\", which chooses and numbers them"),
-            "{text}"
-        );
-    }
 }

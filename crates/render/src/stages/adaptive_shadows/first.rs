@@ -15,13 +15,13 @@ pub(super) fn all_are_points(aim: &Aim, lights: &[Light]) -> bool {
 
 /// The outermost points that first rays are cast to, as a part of a light's half width. Shadows that hide less than what lies beyond
 /// would rarely hide a sample.
-const RIM: f32 = 0.9;
+pub const RIM: f32 = 0.9;
 
 /// Points of a light that first rays are cast to, for discs, then for rectangles: coordinates in [−1, 1].
 pub(super) type Places = [[[f32; 2]; FIRST_TARGETS as usize]; 2];
 
 /// A lattice in the square, and the same mapped to the disc, line by line.
-pub(super) fn places() -> Places {
+pub fn places() -> Places {
     let [mut discs, mut rectangles] = [[[0.0; 2]; FIRST_TARGETS as usize]; 2];
     for (number, (disc, rectangle)) in (0..).zip(discs.iter_mut().zip(&mut rectangles)) {
         let coordinate = |line: u32| (line as f32 - AROUND as f32) / AROUND as f32;
@@ -34,7 +34,7 @@ pub(super) fn places() -> Places {
 
 /// The place of the ray of a pixel in column `x` and row `y` of the image.
 #[inline(always)]
-pub(super) fn place_of([x, y]: [u32; 2]) -> u32 {
+pub fn place_of([x, y]: [u32; 2]) -> u32 {
     y % NEIGHBORHOOD * NEIGHBORHOOD + x % NEIGHBORHOOD
 }
 
@@ -78,33 +78,5 @@ impl Extent {
     pub(super) fn target(&self, origin: Vec3, places: &Places, place: u32) -> Vec3 {
         let [x, y] = places[usize::from(self.shape == Shape::Rectangle)][place as usize];
         origin + (self.center + x * self.u + y * self.v)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    #[test]
-    fn every_neighborhood_has_all_places() {
-        for (x, y) in [(0, 0), (3, 1), (7, 12)] {
-            let pixels = (0..NEIGHBORHOOD).flat_map(|row| (0..NEIGHBORHOOD).map(move |column| (x + column, y + row)));
-            let found: BTreeSet<u32> = pixels.map(|(x, y)| place_of([x, y])).collect();
-            assert!(found.into_iter().eq(0..FIRST_TARGETS), "{x}, {y}");
-        }
-    }
-
-    #[test]
-    fn sixteen_places_are_at_the_rim() {
-        let [discs, rectangles] = places();
-        let at_rim = |lengths: Vec<f32>| {
-            assert!(lengths.iter().all(|length| *length < RIM + 1e-6), "{lengths:?}");
-            lengths.iter().filter(|length| **length > RIM - 1e-6).count()
-        };
-        assert_eq!(at_rim(discs.iter().map(|[x, y]| x.hypot(*y)).collect()), 16);
-        assert_eq!(at_rim(rectangles.iter().map(|[x, y]| x.abs().max(y.abs())).collect()), 16);
-        assert_eq!(discs[FIRST_TARGETS as usize / 2], [0.0; 2]);
     }
 }

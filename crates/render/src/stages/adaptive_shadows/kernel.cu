@@ -3,8 +3,9 @@
 // 1. `first_rays_*`: one ray from each surface point to each light, one thread per ray.
 // 2. `find_open`: where neighbours agree, the share is theirs; elsewhere it is negative for now. `list_open`: where that is.
 // 3. `open_rays_*`: a ray to each sample from there, one thread per surface point and light.
-#ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"
@@ -123,7 +124,7 @@ KERNEL(find_open, AdaptiveShadows, BLOCK, 4) {
     args.counts[blockIdx.x] = sum;
 }
 
-#if !CUT_OUTS
+#if !INSTANCES
 KERNEL(list_open, AdaptiveShadows, BLOCK, 4) {
     SHARED(unsigned, warps, [BLOCK / WARP]);
     const Shadows &shadows = args.shadows;

@@ -19,4 +19,4 @@
 
 pub(crate) mod cpu;
 pub(crate) mod cuda;
-mod first;
+pub(crate) mod first;

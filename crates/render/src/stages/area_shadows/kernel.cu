@@ -1,7 +1,8 @@
 // The reference on a CUDA device: twin of cpu.rs. A warp takes 32 surface points, one after the other; lanes are triangles.
 // `area_shadows_N_*`: samples in up to N words of bits.
-#ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"
@@ -24,7 +25,7 @@ DEVICE Sight broadcast(const Sight &sight, unsigned lane) {
 
 // What a lane's triangle, if it has one, leaves of the samples.
 template <unsigned WORDS, class Handle>
-DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const RowTable &table, const Coverage &coverage,
+DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const RowTable &table, const Coverage *coverage,
                           const Handle &triangle, bool has, Seen<WORDS> &seen) {
     const Occluding own = occluding(load_corners(triangle));
     const Hiding hiding = {own.parts, coverage, cut_of(triangle)};
@@ -52,7 +53,7 @@ DEVICE void test_point(const Shadows &args, const Structure &structure, const Li
         count -= taken;
         if (taken != 0) {
             const unsigned place = found[count + (lane < taken ? lane : 0)];
-            test_triangle<WORDS>(point, sight, shape, table, structure.coverage, triangle_at(structure, place), lane < taken, seen);
+            test_triangle<WORDS>(point, sight, shape, table, coverage_of(structure), triangle_at(structure, place), lane < taken, seen);
         }
         __syncwarp();
     }

@@ -6,14 +6,13 @@ use crate::cuda::Runtime;
 use crate::data::wave::Wave;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
-use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, blocks_for};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, Modules, PerStructure, Work, blocks_for};
 use crate::shadow::Aim;
 use crate::shadow::launch::SampleSets;
 
 /// One for all scenes: see the kernel.
 const KERNEL: PerStructure = PerStructure {
-    module: "filters",
-    cut_out_module: "filters",
+    modules: Modules { plain: "filters", cut_out: "filters", instanced: "filters" },
     names: lightmesh_layout::names_per_structure!("filters"),
 };
 

@@ -11,7 +11,6 @@
 
 // The structure of this type in a scene.
 DEVICE const Bvh &structure_of(const Scene &scene, const Bvh &) { return scene.bvh; }
-DEVICE const Grid &structure_of(const Scene &scene, const Grid &) { return scene.grid; }
 DEVICE const BruteForce &structure_of(const Scene &scene, const BruteForce &) { return scene.brute_force; }
 DEVICE const InstancedBvh &structure_of(const Scene &scene, const InstancedBvh &) { return scene.instanced; }
 

@@ -60,9 +60,7 @@ pub(crate) fn interpolate<R: Runtime>(
     let cost = lights.max(1) as u64;
     let work = Work { units: cells.count as u64, cost, first: FIRST_ITEMS, progress: cells.count as u64 };
     let interpolate = INTERPOLATE.of(wave.scene);
-    if wave.scene.cut_out {
-        cuda.bring_lines(interpolate.module, mesh)?;
-    }
+    cuda.bring_lines(interpolate.module, mesh)?;
     cuda.in_pieces(wave.job, interpolate, work, |piece| {
         let count = piece.end - piece.start;
         let words = window_bricks(mesh.template.reach()) + MOST_LIGHTS * mesh.template.words() as u32;

@@ -1,8 +1,9 @@
 // Step 5, first half, on a CUDA device: the weighted mean of what a surface point's light points see. Formula (3).
 //
 // `interpolate`: one warp per item; `fallback_*`: long tests of surface points without usable light points.
-#ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

@@ -6,5 +6,3 @@
 
 pub(crate) mod cpu;
 pub(crate) mod cuda;
-#[cfg(test)]
-mod tests;

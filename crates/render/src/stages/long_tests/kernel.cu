@@ -1,6 +1,7 @@
 // Step 4 on a CUDA device: which lights does each light point see? Twin of cpu.rs, one thread per light point.
-#ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

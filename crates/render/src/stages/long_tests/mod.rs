@@ -5,5 +5,3 @@
 
 pub(crate) mod cpu;
 pub(crate) mod cuda;
-#[cfg(test)]
-mod tests;

@@ -16,7 +16,7 @@ use crate::stages::pixel_samples::alike::{Facet, lets_through, most_mirrored};
 const BATCH: usize = 1024;
 
 /// The mirrored rays that are left, and what they see.
-pub(crate) fn merged_rays(wave: &HostWave) -> (RayList, Vec<Hit>) {
+pub fn merged_rays(wave: &HostWave) -> (RayList, Vec<Hit>) {
     let pixels = &wave.rays.pixels;
     let begins = |&ray: &usize| ray == 0 || pixels[ray] != pixels[ray - 1];
     let count = pixels.len();
@@ -92,77 +92,4 @@ fn weight_of(list: &RayList, first: usize, part: u32) -> Vec3 {
 fn covering(cone: Cone, count: u32) -> Cone {
     let times = (count as f32).sqrt();
     Cone { width: times * cone.width, spread: times * cone.spread }
-}
-
-#[cfg(test)]
-mod tests {
-    use lightmesh_layout::constants::THROUGHS_SHIFT;
-    use lightmesh_scene::Material;
-    use lightmesh_testkit::SceneDraft;
-
-    use super::*;
-    use crate::accel::Ray;
-    use crate::data::lights::LightGroup;
-    use crate::data::wave::Wave;
-    use crate::job::{Job, Sampling};
-    use crate::observer::Unobserved;
-    use crate::prepared::PreparedScene;
-    use crate::settings::Acceleration;
-
-    /// What is left of rays straight down from these places, in these pixels, above a floor that mirrors `ks` and, at x < 0, a higher one.
-    fn left(ks: f32, rays: &[(f32, u32)], throughs: u32) -> (RayList, Vec<Hit>) {
-        let floor = |x: f64, y: f64| [[x, y, -5.0], [x, y, 5.0], [x + 5.0, y, 5.0], [x + 5.0, y, -5.0]];
-        let draft = SceneDraft::new().painted(Material::default().with_ks(Vec3::splat(ks)));
-        let scene = draft.quad(floor(0.0, 0.0)).quad(floor(-5.0, 1.0)).finish("floors");
-        let scene = PreparedScene::new(&scene, &Acceleration::BruteForce, &Unobserved).unwrap();
-        let down = |x: f32| Ray { origin: Vec3::new(x, 4.0, 0.2), direction: Vec3::NEG_Y, t_max: f32::INFINITY };
-        let list = RayList {
-            rays: rays.iter().map(|&(x, _)| down(x)).collect(),
-            pixels: rays.iter().map(|&(_, pixel)| pixel).collect(),
-            samples: (0..rays.len() as u32).map(|ray| ray + 1 + (throughs << THROUGHS_SHIFT)).collect(),
-            weights: (0..rays.len()).map(|ray| Vec3::splat(0.25 + ray as f32 / 64.0)).collect(),
-            cones: vec![Cone { width: 0.5, spread: -0.25 }; rays.len()],
-            depth: 1 + throughs,
-            bounces: 2,
-            spacing: [0.0, 0.01],
-            eye: Vec3::splat(2.0),
-            ..RayList::default()
-        };
-        let mut hits = vec![Hit::MISS; rays.len()];
-        scene.geometry.accelerator.closest_hits(&list.rays, &mut hits);
-        let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
-        merged_rays(&Wave { job: &job, scene: &scene, rays: &list, hits: &hits, lights: LightGroup::ALL, parts: 1 })
-    }
-
-    const RAYS: [(f32, u32); 7] = [(1.0, 3), (-1.0, 3), (1.1, 3), (9.0, 3), (-1.1, 3), (1.2, 5), (8.0, 5)];
-
-    #[test]
-    fn rays_of_a_pixel_on_one_surface_are_one() {
-        let (rays, hits) = left(0.0, &RAYS, 0);
-        let origins: Vec<f32> = rays.rays.iter().map(|ray| ray.origin.x).collect();
-        assert_eq!(origins, [1.0, -1.0, 9.0, 1.2, 8.0], "what sees nothing stays apart");
-        assert_eq!(rays.pixels, [3, 3, 3, 5, 5]);
-        assert_eq!(rays.samples, [1, 2, 4, 6, 7]);
-        let weights: Vec<f32> = rays.weights.iter().map(|weight| 64.0 * weight.x).collect();
-        assert_eq!(weights, [34.0, 37.0, 19.0, 21.0, 22.0]);
-        assert_eq!(hits.iter().map(|hit| hit.is_some()).collect::<Vec<_>>(), [true, true, false, true, false]);
-        let root = 2.0_f32.sqrt();
-        let widths: Vec<f32> = rays.cones.iter().map(|cone| cone.width).collect();
-        assert_eq!(widths, [0.5 * root, 0.5 * root, 0.5, 0.5, 0.5]);
-        assert_eq!((rays.depth, rays.bounces, rays.spacing), (1, 2, [0.0, 0.01]));
-    }
-
-    #[test]
-    fn rays_that_meet_clear_mirrors_or_went_through_something_stay_apart() {
-        assert_eq!(left(0.05, &RAYS, 0).1.len(), 5, "a twentieth of half a pixel's light may be merged");
-        assert_eq!(left(0.5, &RAYS, 0).1.len(), RAYS.len());
-        assert_eq!(left(0.0, &RAYS, 1).1.len(), RAYS.len());
-    }
-
-    #[test]
-    fn many_rays_of_one_pixel_are_merged_32_at_a_time() {
-        let rays: Vec<(f32, u32)> = (0..2100).map(|ray| (1.0, ray / 70)).collect();
-        let (rays, _) = left(0.0, &rays, 0);
-        assert_eq!(rays.pixels, (0..30).flat_map(|pixel| [pixel; 3]).collect::<Vec<u32>>());
-    }
 }

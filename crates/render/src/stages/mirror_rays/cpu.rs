@@ -17,7 +17,8 @@ use crate::shading::{Surface, material_of};
 /// Number of rays per task.
 const BATCH: usize = 1024;
 
-pub(crate) fn mirror_rays(wave: &HostWave) -> RayList {
+/// The mirrored rays of a wave.
+pub fn mirror_rays(wave: &HostWave) -> RayList {
     let count = wave.hits.len();
     let starts: Vec<usize> = (0..count).step_by(BATCH).collect();
     let of_batch = |start: usize| onward(wave, start..count.min(start + BATCH));

@@ -138,9 +138,9 @@ DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemSight &item, unsigned light
 }
 
 // 4. What candidates hide, until nothing is left. Returns whether anything is. `cuts` are the numbers of their opacities, 0 for those that are
-// opaque, with CUT_OUTS.
+// opaque, with a coverage.
 template <unsigned WORDS>
-DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const float4 *candidates, const Coverage &coverage,
+DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const float4 *candidates, const Coverage *coverage,
                             const unsigned *cuts, unsigned count, Seen<WORDS> &seen) {
     ROLLED
     for (unsigned k = 0; k < count; ++k) {
@@ -179,8 +179,9 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
     look_at_rows(args, item, light, set, table);
     __syncwarp();
     // The numbers of opacities take the places of the triangles, which have been read.
+    const Coverage *coverage = coverage_of(structure);
     unsigned cut = 0;
-    if (CUT_OUTS) {
+    if (coverage != nullptr) {
         if (choice != DROPPED)
             cut = triangle_cut(triangle_at(structure, memory.found[first + lane]));
         __syncwarp();
@@ -190,11 +191,11 @@ DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, con
         UNROLL
         for (unsigned part = 0; part < OCCLUDER_PARTS; ++part)
             memory.candidates[OCCLUDER_PARTS * place + part] = own.parts[part];
-        if (CUT_OUTS)
+        if (coverage != nullptr)
             memory.found[first + place] = cut;
     }
     __syncwarp();
-    return test_candidates(item, table, memory.candidates, structure.coverage, memory.found + first, tested, seen);
+    return test_candidates(item, table, memory.candidates, coverage, memory.found + first, tested, seen);
 }
 
 // 5. Whether rays to the samples still seen cost less than going on, if candidates go on hiding samples as those have that `spent` so much. The

@@ -1,4 +1,4 @@
-//! Step 1 on the CPU.
+//! Step 1 on the CPU: camera rays in blocks of pixels, so that consecutive rays are coherent.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
 }
 
 /// The pixels of some rows in blocks of 4×2 within 8×8 within 32×32, so that consecutive rays are coherent.
-fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
+pub fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
     let mut pixels = Vec::with_capacity((width * (rows.end - rows.start)) as usize);
     let cut = |range: Range<u32>, size: u32| {
         range.clone().step_by(size as usize).map(move |first| first..range.end.min(first + size))
@@ -72,19 +72,4 @@ pub(crate) fn closest_hits(
         piece(rays.len(), &mut || scene.geometry.accelerator.closest_hits(rays, hits));
     });
     hits
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn blocks_hold_every_pixel_of_their_rows_once() {
-        for (width, rows) in [(1, 0..1), (7, 3..6), (33, 0..35), (64, 16..48)] {
-            let mut pixels = blocks_of_pixels(width, rows.clone());
-            pixels.sort_unstable();
-            assert!(pixels.into_iter().eq(rows.start * width..rows.end * width));
-        }
-        assert_eq!(blocks_of_pixels(32, 0..2)[..9], [0, 1, 2, 3, 32, 33, 34, 35, 4]);
-    }
 }

@@ -1,8 +1,9 @@
 // Shadow rays on a CUDA device: twin of cpu.rs, one thread per surface point.
 //
 // `shadow_rays_*`: one ray to the centre of each light; `sample_rays_*`: one to each sample of a light.
-#ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+#define CUT_OUTS 1
+#ifndef INSTANCES
+// Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

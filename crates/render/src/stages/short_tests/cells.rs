@@ -89,7 +89,7 @@ fn plane_is_near([a, b, c]: &[Vec3; 3], region: &Bounds, reach: f32) -> bool {
 /// A hidden light point lies at P + s·(q − P) with P in `origins`, q on the triangle and s ≥ 1. It is nearer to P than the
 /// radius r, so s is at most r divided by the distance between the box and the triangle.
 #[inline(always)]
-fn shadow_box(mesh: &LightMesh, cell: IVec3, origins: &Bounds, [a, b, c]: &[Vec3; 3]) -> Option<(IVec3, IVec3)> {
+pub fn shadow_box(mesh: &LightMesh, cell: IVec3, origins: &Bounds, [a, b, c]: &[Vec3; 3]) -> Option<(IVec3, IVec3)> {
     let slack = Vec3::splat(mesh.slack());
     let reach = Vec3::splat(mesh.radius + mesh.slack());
     // 1. All q − P.
@@ -110,48 +110,4 @@ fn shadow_box(mesh: &LightMesh, cell: IVec3, origins: &Bounds, [a, b, c]: &[Vec3
     let (least, largest) = (IVec3::splat(1 - mesh.template.reach()), IVec3::splat(mesh.template.reach()));
     let (low, high) = (low.max(least), high.min(largest));
     low.cmple(high).all().then_some((low, high))
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::UVec3;
-    use lightmesh_scene::Weight;
-
-    use super::*;
-    use crate::light_mesh::{Lattice, Template};
-
-    fn mesh() -> LightMesh {
-        LightMesh {
-            lattice: Lattice { anchor: Vec3::ZERO, step: 1.0, number: UVec3::ZERO, first: IVec3::ZERO, dims: [100; 3] },
-            template: Template::new(3.1).unwrap(),
-            radius: 3.1,
-            weight: Weight::Smooth,
-        }
-    }
-
-    #[test]
-    fn a_shadow_widens_away_from_its_triangle() {
-        let origins = Bounds { min: Vec3::splat(10.4), max: Vec3::splat(10.6) };
-        let wall = [Vec3::new(11.5, 10.0, 10.0), Vec3::new(11.5, 11.0, 10.0), Vec3::new(11.5, 10.0, 11.0)];
-        let (low, high) = shadow_box(&mesh(), IVec3::splat(10), &origins, &wall).unwrap();
-        assert_eq!((low.x, high.x), (2, 3), "only beyond the triangle");
-        assert!(low.y < 0 && high.y > 1, "wider than the triangle");
-        assert!(low.y > -3 && high.y < 4, "but not everywhere");
-    }
-
-    #[test]
-    fn a_triangle_out_of_reach_hides_nothing() {
-        let origins = Bounds { min: Vec3::splat(10.4), max: Vec3::splat(10.6) };
-        let far = [Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner + Vec3::splat(14.0));
-        assert!(shadow_box(&mesh(), IVec3::splat(10), &origins, &far).is_none());
-    }
-
-    #[test]
-    fn a_triangle_around_the_origins_may_hide_everything() {
-        let origins = Bounds { min: Vec3::splat(10.4), max: Vec3::splat(10.6) };
-        let around = [Vec3::new(5.0, 5.0, 10.5), Vec3::new(20.0, 5.0, 10.2), Vec3::new(5.0, 20.0, 10.9)];
-        // All light points nearer than 3.1 to the origins.
-        let expected = (IVec3::splat(-2), IVec3::splat(3));
-        assert_eq!(shadow_box(&mesh(), IVec3::splat(10), &origins, &around), Some(expected));
-    }
 }

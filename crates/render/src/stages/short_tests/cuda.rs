@@ -65,9 +65,7 @@ pub(crate) fn short_tests<R: Runtime>(
             cuda.launch(kernel, warps_for(&piece, WARPS, shared), &arguments)
         })
     };
-    if scene.cut_out {
-        cuda.bring_lines(kernels.cut_out_module, mesh)?;
-    }
+    cuda.bring_lines(kernels.of(scene).module, mesh)?;
     if !by_cell {
         each_item(HALF_BALLS.of(scene), 0, 0)?;
     }

@@ -4,7 +4,7 @@
 // 2. `half_balls_of_items`, `short_tests_plain_*`: twin of plain.rs, the reference: every segment walks through the
 //    acceleration structure.
 #ifndef CUT_OUTS
-// Scenes with instances use the module with CUT_OUTS.
+// Scenes with cut-outs or instances use the module with CUT_OUTS.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

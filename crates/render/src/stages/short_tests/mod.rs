@@ -10,13 +10,11 @@
 //! triangles that can matter. [`cells`] uses that; [`plain`] queries the acceleration structure segment by segment and is the
 //! reference: both give the same masks in every bit, and so do their twins on a CUDA device (`by_cell.cuh`, `plain.cuh`).
 
-mod batch;
+pub(crate) mod batch;
 pub(crate) mod cells;
 pub(crate) mod cpu;
 pub(crate) mod cuda;
 pub(crate) mod plain;
-#[cfg(test)]
-mod tests;
 
 #[cfg(doc)]
 use crate::light_mesh::LightMesh;

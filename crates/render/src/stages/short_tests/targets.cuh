@@ -118,7 +118,7 @@ DEVICE unsigned stopped_lanes(const Coverage &coverage, const Candidate &candida
 
 // 3. d. Clears the light points that the candidates hide from the lanes. Targets of one candidate are consecutive, and the last is
 // followed by one of no candidate. Returns whether the lane tested a triangle.
-DEVICE bool clear_blocked(const ShortTests &args, const Coverage &coverage, const ItemLane &lane, const CellMemory &memory) {
+DEVICE bool clear_blocked(const ShortTests &args, const Coverage *coverage, const ItemLane &lane, const CellMemory &memory) {
     bool asked = false;
     Target target = memory.targets[0];
     for (unsigned i = 0; __float_as_uint(target.w) != NO_TARGET;) {
@@ -141,8 +141,8 @@ DEVICE bool clear_blocked(const ShortTests &args, const Coverage &coverage, cons
                 blocked &= lanes;
                 edges_known = true;
             }
-            if (CUT_OUTS)
-                blocked = stopped_lanes(coverage, candidate, lane, d, blocked);
+            if (coverage != nullptr)
+                blocked = stopped_lanes(*coverage, candidate, lane, d, blocked);
             if (lane_of_thread() == 0)
                 memory.seen[point] &= ~blocked;
         } while (__float_as_uint(target.w) >> 16 == current);
@@ -153,7 +153,7 @@ DEVICE bool clear_blocked(const ShortTests &args, const Coverage &coverage, cons
 
 // 3. c. Lanes process the rows of light points that the candidates reach, and list the points that may be hidden; the warp tests
 // them. `rows` is the number of rows of the lane's candidate.
-DEVICE bool test_candidates(const ShortTests &args, const Coverage &coverage, const CellItem &item, const ItemLane &own,
+DEVICE bool test_candidates(const ShortTests &args, const Coverage *coverage, const CellItem &item, const ItemLane &own,
                             const CellMemory &memory, unsigned rows) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();

@@ -1,0 +1,4 @@
+// The kernels of kernel.cu that test triangles, for scenes with shapes in many places.
+#define INSTANCES 1
+#define WALKS_bvh 0
+#include "stages/long_tests/kernel.cu"

@@ -1,0 +1,9 @@
+mod bvh_build;
+mod coverage;
+mod distinct;
+mod grid_build;
+mod grid_distance;
+mod grid_file;
+mod grid_overlap;
+mod structures;
+mod triangle;

@@ -1,0 +1,4 @@
+#[cfg(feature = "mesh-file")]
+mod file;
+mod host;
+mod noticed;

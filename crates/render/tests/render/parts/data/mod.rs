@@ -1,0 +1,3 @@
+mod lights;
+mod mattes;
+mod picture;

@@ -1,0 +1,3 @@
+mod acceleration;
+mod choices;
+mod crop;

@@ -1,0 +1,6 @@
+mod dielectric;
+mod environment;
+mod facets;
+mod lights;
+mod normal_map;
+mod tint;

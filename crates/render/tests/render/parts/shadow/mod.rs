@@ -1,0 +1,4 @@
+mod horizon;
+mod rows;
+mod sample_ray;
+mod terminator;

@@ -1,0 +1,76 @@
+use lightmesh_layout::constants::{MOST_OF_ROW, MOST_ROWS};
+use lightmesh_layout::scene::SampleRows;
+use lightmesh_render::Sampling;
+use lightmesh_render::backend::Aim;
+use lightmesh_render::internals::shadow::{KNOWN, MOST_KNOWN, Rows};
+
+const NUMBERS: [u32; 12] = [1, 2, 3, 5, 16, 17, 64, 225, 256, 300, 1000, 65535];
+
+#[test]
+fn rows_that_are_kept_are_those_of_their_number() {
+    let of = |samples| Rows::of(&Aim::Extent(Sampling { samples, seed: 0, spread: true }));
+    let count = |rows: &Rows| rows.disc.iter().flat_map(|set| set.count).sum::<u32>();
+    for samples in (1..=20).chain(1..=20) {
+        assert_eq!(count(&of(samples)), samples);
+    }
+    assert!(KNOWN.lock().unwrap().len() <= MOST_KNOWN);
+}
+
+#[test]
+fn every_sample_has_a_bit() {
+    for samples in NUMBERS {
+        let Rows { disc, rectangle, .. } = Rows::new(samples);
+        let total = |sets: &[SampleRows]| sets.iter().flat_map(|set| set.count).sum::<u32>();
+        assert_eq!(total(&disc), samples);
+        let [first, ..] = rectangle[..] else { panic!("no rows") };
+        let count = rectangle[0].count[0];
+        assert_eq!(total(&rectangle) - count, samples + first.surplus, "{samples}");
+        assert!(first.surplus < first.lines, "{samples}: {}", first.surplus);
+        for set in disc.iter().chain(&rectangle) {
+            let mut first = 0;
+            for word in 0..set.words as usize {
+                let rows = first..set.ends[word] as usize;
+                let mut bits = 0u32;
+                for row in rows {
+                    let own = ((1u64 << set.count[row]) - 1) << set.place[row];
+                    assert!(own <= u64::from(u32::MAX) && bits & own as u32 == 0 && set.count[row] <= MOST_OF_ROW);
+                    bits |= own as u32;
+                }
+                first = set.ends[word] as usize;
+            }
+            assert_eq!(first, set.rows as usize);
+        }
+        for (sets, what) in [(&disc, "disc"), (&rectangle, "rectangle")] {
+            if samples <= 256 {
+                assert_eq!(sets.len(), 1, "{samples} samples of a {what}");
+            }
+        }
+        let edges = |choose: fn(&SampleRows) -> u32| rectangle.iter().filter(|set| choose(set) < MOST_ROWS).count();
+        assert_eq!((edges(|set| set.entering), edges(|set| set.leaving)), (1, 1), "{samples}");
+    }
+}
+
+#[test]
+fn the_usual_numbers_have_few_words() {
+    for (samples, words) in [(16, [1, 1]), (64, [2, 3]), (256, [10, 9])] {
+        let Rows { disc, rectangle, .. } = Rows::new(samples);
+        assert_eq!([disc[0].words, rectangle[0].words], words, "{samples} samples");
+    }
+    let mut counts = Rows::new(64).disc[0].count;
+    counts.sort_unstable_by(|a, b| b.cmp(a));
+    assert_eq!(counts[..9], [10, 10, 9, 9, 8, 8, 5, 5, 0]);
+}
+
+#[test]
+fn rows_halve_their_strips() {
+    for samples in [1, 16, 225] {
+        let set = &Rows::new(samples).disc[0];
+        let rows = 0..set.rows as usize;
+        // The mean height of the samples is that of the disc, and so is the mean square, nearly.
+        let mean = |f: fn(f32) -> f32| {
+            rows.clone().map(|row| set.count[row] as f32 * f(set.y[row])).sum::<f32>() / samples as f32
+        };
+        assert!(mean(|y| y).abs() < 1e-5, "{samples}");
+        assert!((mean(|y| y * y) - 0.25).abs() < if samples > 100 { 0.005 } else { 0.26 }, "{samples}");
+    }
+}

@@ -1,0 +1,71 @@
+//! Directions and weights of mirrored rays.
+
+use glam::Vec3;
+use lightmesh_render::accel::{Hit, Ray};
+use lightmesh_render::backend::Wave;
+use lightmesh_render::internals::stages::mirror_rays;
+use lightmesh_render::{Acceleration, Job, LightGroup, PreparedScene, RayList, Sampling, Unobserved};
+use lightmesh_scene::Material;
+use lightmesh_testkit::SceneDraft;
+
+fn mirror(ks: Vec3) -> Material {
+    Material::default().with_ks(ks)
+}
+
+/// The mirrored rays of `list` on a floor of this material.
+fn mirrored(material: Material, normals: Option<Vec3>, list: &RayList) -> RayList {
+    let mut scene = SceneDraft::new().painted(material).floor(0.0, 10.0).finish("floor");
+    scene.geometry_mut().mesh.normals =
+        normals.map_or(Vec::new(), |normal| vec![normal; scene.geometry.mesh.positions.len()]);
+    let scene = PreparedScene::new(&scene, &Acceleration::BruteForce, &Unobserved).unwrap();
+    let mut hits = vec![Hit::MISS; list.rays.len()];
+    scene.geometry.accelerator.closest_hits(&list.rays, &mut hits);
+    let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
+    let list = &RayList { bounces: 1, ..list.clone() };
+    mirror_rays(&Wave { job: &job, scene: &scene, rays: list, hits: &hits, lights: LightGroup::ALL, parts: 1 })
+}
+
+/// Rays of unit length: two that meet the floor and, between them, one that does not.
+fn rays(weights: Vec<Vec3>) -> RayList {
+    let ray = |direction: Vec3| Ray { origin: Vec3::new(0.5, 2.0, 0.25), direction, t_max: f32::INFINITY };
+    let directions = [Vec3::new(0.6, -0.8, 0.0), Vec3::Y, Vec3::new(0.0, -0.8, -0.6)];
+    RayList { rays: directions.map(ray).to_vec(), pixels: vec![4, 5, 7], weights, ..RayList::default() }
+}
+
+#[test]
+fn rays_leave_as_they_came_on_the_other_side() {
+    let next = mirrored(mirror(Vec3::new(0.5, 0.25, 1.0)), None, &rays(Vec::new()));
+    assert_eq!(next.pixels, [4, 7], "rays that miss end");
+    assert_eq!(next.weights, [Vec3::new(0.5, 0.25, 1.0); 2]);
+    for (ray, expected) in next.rays.iter().zip([Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.0, 0.8, -0.6)]) {
+        assert!(ray.direction.distance(expected) < 1e-6, "{}", ray.direction);
+        assert!((ray.direction.length() - 1.0).abs() < 1e-6);
+        assert!(ray.origin.y >= 0.0 && ray.origin.y < 1e-4, "just off the floor: {}", ray.origin.y);
+    }
+    assert!(next.rays[0].origin.distance(Vec3::new(2.0, 0.0, 0.25)) < 1e-4);
+}
+
+#[test]
+fn weights_are_products_along_the_way() {
+    let weights = vec![Vec3::new(0.5, 1.0, 0.0); 3];
+    let next = mirrored(mirror(Vec3::splat(0.5)), None, &rays(weights));
+    assert_eq!(next.weights, [Vec3::new(0.25, 0.5, 0.0); 2]);
+}
+
+#[test]
+fn what_does_not_mirror_ends_the_ray() {
+    assert!(mirrored(mirror(Vec3::ZERO), None, &rays(Vec::new())).rays.is_empty());
+    assert!(mirrored(mirror(Vec3::X), None, &rays(vec![Vec3::Y; 3])).rays.is_empty(), "no channel is left");
+}
+
+#[test]
+fn smooth_normals_turn_the_mirror_but_not_into_the_surface() {
+    // Leaning by 10 degrees against the first ray: it turns by 20.
+    let lean = 10f32.to_radians();
+    let next = mirrored(mirror(Vec3::ONE), Some(Vec3::new(-lean.sin(), lean.cos(), 0.0)), &rays(Vec::new()));
+    let expected = Vec3::new(0.6, 0.8, 0.0);
+    assert!((next.rays[0].direction.angle_between(expected) - 2.0 * lean).abs() < 1e-3);
+    // A normal that would reflect into the floor: the geometric one is used instead.
+    let next = mirrored(mirror(Vec3::ONE), Some(Vec3::new(0.99, 0.141, 0.0)), &rays(Vec::new()));
+    assert!(next.rays.iter().all(|ray| ray.direction.y > 0.0), "{:?}", next.rays);
+}

@@ -1,0 +1,2 @@
+mod levels;
+mod lookup;
