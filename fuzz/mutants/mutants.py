@@ -292,7 +292,7 @@ class Trials:
         watch.start()
         for line in process.stdout:
             if found := FAILED.match(line):
-                failed = found.group(1)
+                failed = found.group(1).strip()
                 break
             if found := PASSED.match(line):
                 passed += int(found.group(1))
