@@ -11,7 +11,7 @@ use crate::references::{Pointer, Problem, leads_somewhere, pointers};
 use crate::{Outcome, Verdict, pages};
 
 /// The documents that describe the repository; the book's pages come from its table of contents.
-const DOCUMENTS: [&str; 14] = [
+const DOCUMENTS: [&str; 15] = [
     "README.md",
     "ARCHITECTURE.md",
     "docs/method/occluder_lists.md",
@@ -26,6 +26,7 @@ const DOCUMENTS: [&str; 14] = [
     "bench/kernels/README.md",
     "bench/peers/README.md",
     "bench/sheet/README.md",
+    "findings/README.md",
 ];
 
 /// Checks the documents in `root`.

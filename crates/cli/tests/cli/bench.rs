@@ -106,7 +106,10 @@ fn rays_are_counted_on_any_scene() {
     let page = Path::new("out").join("report.html");
     assert!(done.stderr.contains(&format!("out.json, {}", page.display())), "{done:?}");
     let report = String::from_utf8(place.read("out/report.md")).unwrap();
-    assert!(report.contains("| Suite | rays, the short version |") && report.contains("| room |"), "{report}");
+    assert!(
+        report.contains("| Suite | rays, the short version |") && report.contains("scene room, size 512"),
+        "{report}"
+    );
     let json = place.json("out.json");
     let rows = json["rows"].as_array().unwrap();
     assert!(rows.iter().any(|row| row["keys"]["scene"] == "room" && row["keys"]["rays"] == "primary"), "{json}");

@@ -135,7 +135,10 @@ fn same<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way, kind: Ki
     let settings = settings(subject, way).with_size(size);
     match kind {
         Kind::Picture => same_picture(cuda, subject, structure, settings),
-        Kind::Samples => same_picture(cuda, subject, structure, settings.with_aa(6)),
+        Kind::Samples => {
+            let samples = if subject.small || runs_all() { 6 } else { 3 };
+            same_picture(cuda, subject, structure, settings.with_aa(samples));
+        }
         Kind::Points => same_at_points(cuda, subject, structure, settings),
         Kind::Ground => same_shadows(cuda, subject, structure, settings.with_aa(3)),
         Kind::Part => {

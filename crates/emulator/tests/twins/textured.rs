@@ -145,7 +145,8 @@ fn surrounded() -> Scene {
 /// Smooth and rough facets under lights with a size and without, one of them the panorama's sun, in mirrors and in gathered light.
 fn same_facet_bits<R: Target>(cuda: &Cuda<R>, ambient: AmbientSource, aa: u32) {
     let scene = PreparedScene::new(&faceted(), &Acceleration::Bvh, &Unobserved).unwrap();
-    let settings = Settings::default().with_ambient_light(ambient).with_bounces(2).with_size(size([48, 36])).with_aa(aa);
+    let settings =
+        Settings::default().with_ambient_light(ambient).with_bounces(2).with_size(size([48, 36])).with_aa(aa);
     assert_same_bits(cuda, &scene, &settings, 2);
 }
 

@@ -1,5 +1,6 @@
-//! The colour map magma of matplotlib (S. van der Walt, N. Smith: *A Better Default Colormap for Matplotlib*, SciPy 2015), which is in the
-//! public domain (CC0).
+//! The colour map magma of matplotlib, which is in the public domain (CC0).
+//!
+//! S. van der Walt, N. Smith: *A Better Default Colormap for Matplotlib*, SciPy 2015.
 
 /// sRGB codes `0xRRGGBB` of 256 values from 0 to 1.
 #[rustfmt::skip]

@@ -44,3 +44,17 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     println!("{} drawings in {folder}", DRAWINGS.len());
     Ok(code)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drawings_are_what_the_renderer_computes() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../docs/drawings");
+        for (name, draw) in DRAWINGS {
+            let committed = fs::read_to_string(folder.join(name)).unwrap();
+            assert!(committed == draw().unwrap(), "{name} is out of date: run `cargo xtask drawings`");
+        }
+    }
+}

@@ -35,6 +35,19 @@ fn full_cells_hold_grids() {
 }
 
 #[test]
+fn what_a_grid_holds_is_told_once() {
+    let others =
+        [triangle(Vec3::splat(0.5), 20), Triangle::new(wide(0).corners(), 30), Triangle::new([Vec3::NAN; 3], 40)];
+    let triangles: Vec<_> = (0..9).map(wide).chain(others).collect();
+    for levels in [Levels::One, Levels::Two] {
+        let grid = built(&triangles, [3, 3, 1], levels).unwrap();
+        assert!(grid.triangles.len() > 10, "some are in several cells");
+        let held: Vec<u32> = grid.held().iter().map(Triangle::index).collect();
+        assert_eq!(held, [0, 1, 2, 3, 4, 5, 6, 7, 8, 20]);
+    }
+}
+
+#[test]
 fn impossible_sizes_are_refused_before_anything_is_allocated() {
     let triangles = [triangle(Vec3::ZERO, 0)];
     assert_eq!(built(&triangles, [4, 0, 4], Levels::One).unwrap_err(), GridError::NoCells { dims: [4, 0, 4] });
