@@ -210,7 +210,7 @@ class Outcome:
 class Trials:
     def __init__(self, path, mutants, binaries, plan):
         self.path, self.mutants, self.binaries, self.plan = path, mutants, binaries, plan
-        self.lock, self.known, self.locks, self.problems = threading.Lock(), {}, {}, set()
+        self.lock, self.known, self.locks, self.problems, self.ignored = threading.Lock(), {}, {}, set(), set()
         self.results = {} if plan.fresh or not path.is_file() else json.loads(path.read_text(encoding="utf-8"))
 
     def run(self):
@@ -249,15 +249,15 @@ class Trials:
             if binary not in self.binaries:
                 self.note(f"there is no {binary}: adapt `tests` in mutants.toml, or `--packages`")
                 continue
-            outcome = self.run_tests(mutant.number, binary, filter_.split(), full)
-            if not outcome.failed:
-                if filter_ and not outcome.passed:
-                    self.note(f"{binary} has no test of the name {filter_}: adapt `tests` in mutants.toml")
-                continue
-            words = [outcome.failed, "--exact"] if outcome.is_named else filter_.split()
-            if self.passes(binary, words, full):
-                return f"{binary} {outcome.failed}"
-            self.note(f"{binary}: {outcome.failed} fails without any error, too")
+            while (outcome := self.run_tests(mutant.number, binary, filter_.split(), full)).failed:
+                if self.passes(binary, [outcome.failed, "--exact"] if outcome.is_named else filter_.split(), full):
+                    return f"{binary} {outcome.failed}"
+                self.note(f"{binary}: {outcome.failed} fails without any error, too")
+                self.ignored.add((binary, outcome.failed))
+                if not outcome.is_named:
+                    break
+            if filter_ and not outcome.failed and not outcome.passed:
+                self.note(f"{binary} has no test of the name {filter_}: adapt `tests` in mutants.toml")
         return ""
 
     def note(self, problem):
@@ -284,7 +284,7 @@ class Trials:
         environment.pop("LIGHTMESH_TESTS", None)
         if full:
             environment["LIGHTMESH_TESTS"] = "all"
-        failed, passed = "", 0
+        failed, passed, has_ignored = "", 0, False
         process = subprocess.Popen([program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                    stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace", start_new_session=True)
         hangs = threading.Event()
@@ -292,7 +292,11 @@ class Trials:
         watch.start()
         for line in process.stdout:
             if found := FAILED.match(line):
-                failed = found.group(1).strip()
+                name = found.group(1).strip()
+                if (binary, name) in self.ignored and "--exact" not in words:
+                    has_ignored = True
+                    continue
+                failed = name
                 break
             if found := PASSED.match(line):
                 passed += int(found.group(1))
@@ -303,7 +307,7 @@ class Trials:
         is_named = bool(failed)
         if not failed and hangs.is_set():
             failed = "(it hangs)"
-        elif not failed and code != 0:
+        elif not failed and code != 0 and not has_ignored:
             failed = f"(it ends with {code})"
         return Outcome(failed, is_named, passed)
 
