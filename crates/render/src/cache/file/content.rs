@@ -130,7 +130,7 @@ fn longs(output: &mut impl Write, numbers: &[u64]) -> io::Result<()> {
 /// to the first of these.
 pub(super) fn read(packed: &[u8], length: u64, budget: Budget, geometries: &[u64]) -> Result<Content, MeshFault> {
     let packed = pack::decoder(packed).map_err(|reason| MeshFault::Read(reason.into()))?;
-    let mut input = Input { inner: BufReader::with_capacity(AT_ONCE, packed.take(length)), budget };
+    let mut input = Input { inner: BufReader::with_capacity(AT_ONCE, packed.take(length)), budget, unchecked: 0 };
     let count = input.int()?;
     if count as usize > geometries.len() {
         return Err(MeshFault::Damaged("it has more geometry than its scene"));
