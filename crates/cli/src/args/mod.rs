@@ -18,7 +18,7 @@ pub(crate) use words::{Progress, Switch, Up};
 use crate::color::When;
 use crate::value::{Bound, ByteSize, Dims, Smooth};
 
-/// Soft shadows by the light mesh method
+/// Render triangle models with exact soft shadows
 #[derive(Debug, Parser)]
 #[command(name = "lightmesh", version, long_version = version(), max_term_width = 110, after_help = EXIT_CODES)]
 pub(crate) struct Cli {

@@ -43,7 +43,7 @@ const PIECE: usize = 1 << 20;
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ManifestError {
     /// A file of this name is something else, or damaged.
-    #[error("{} is not a manifest of films ({reason}); choose another folder for -o, or remove it and add --overwrite to begin anew", path.display())]
+    #[error("{} is not a manifest of films ({reason}); choose another folder for -o, or remove it and write --overwrite in place of --resume to begin anew", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
@@ -60,7 +60,7 @@ pub(crate) enum ManifestError {
     },
     /// Another version of the program may render other pixels.
     #[error(
-        "{}: the film {film} was begun by version {was} of lightmesh, and this is {is}; use that version, or add --overwrite to begin anew", path.display()
+        "{}: the film {film} was begun by version {was} of lightmesh, and this is {is}; use that version, or write --overwrite in place of --resume to begin anew", path.display()
     )]
     Program {
         /// The file.
@@ -73,7 +73,7 @@ pub(crate) enum ManifestError {
         is: &'static str,
     },
     /// A setting is not that of the frames that are there.
-    #[error("{}: the settings of the film {film} differ: {flag} was {was} and is {is}; give the former, or add --overwrite to begin anew", path.display())]
+    #[error("{}: the settings of the film {film} differ: {flag} was {was} and is {is}; give the former, or write --overwrite in place of --resume to begin anew", path.display())]
     Settings {
         /// The file.
         path: PathBuf,
@@ -87,7 +87,7 @@ pub(crate) enum ManifestError {
         is: String,
     },
     /// The scene is not that of the frames that are there.
-    #[error("{}: the scene of the film {film} differs: {scene}, or a file that it refers to, has changed; restore it, or add --overwrite to begin anew", path.display())]
+    #[error("{}: the scene of the film {film} differs: {scene}, or a file that it refers to, has changed; restore it, or write --overwrite in place of --resume to begin anew", path.display())]
     Scene {
         /// The file.
         path: PathBuf,
