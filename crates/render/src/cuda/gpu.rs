@@ -28,7 +28,6 @@ impl fmt::Display for Version {
 
 /// A device as described by the driver.
 #[derive(Clone, Debug)]
-#[cfg_attr(not(feature = "cuda"), expect(dead_code, reason = "only the driver makes one"))]
 pub struct Gpu {
     /// N of `cuda:N`, among the visible devices.
     pub number: u32,
