@@ -10,7 +10,7 @@ use crate::light_mesh::{BrickKey, bits};
 pub(super) const POINTS: usize = 1 << POINT_BITS;
 
 /// Bytes that a table takes at most for so many bricks and these lights. Its keys grow to twice of what they hold, while the old ones are
-/// still there; columns, one after the other, by a [`SLACK`]th.
+/// still there; columns, one after the other, by a `SLACK`th.
 pub fn bytes_of_rows<'a>(bricks: usize, lights: impl Iterator<Item = &'a Seen>) -> u64 {
     let (sum, largest) =
         lights.map(bytes_of_brick).fold((0, 0), |(sum, largest), column| (sum + column, column.max(largest)));

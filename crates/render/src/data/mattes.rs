@@ -6,7 +6,7 @@ use rayon::prelude::*;
 /// The most objects or materials of a pixel whose samples are counted.
 const MATTE_SLOTS: u32 = 8;
 
-/// The samples of each pixel by what they see: up to [`MATTE_SLOTS`] things, in the order in which samples find them. Further things are not
+/// The samples of each pixel by what they see: up to `MATTE_SLOTS` things, in the order in which samples find them. Further things are not
 /// counted.
 #[derive(Clone, Debug)]
 pub struct Counted {

@@ -34,7 +34,7 @@ pub struct Coefficients {
     pub emission: Vec3,
     /// What is left of light that goes straight on.
     pub transmittance: Vec3,
-    /// How opaque a surface with [facets](super::facets) is, whose other coefficients do not know.
+    /// How opaque a surface with facets is, whose other coefficients do not know.
     pub opacity: f32,
     /// How rough its facets are.
     pub roughness: f32,
