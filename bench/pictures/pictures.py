@@ -26,6 +26,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 MODELS = (".obj", ".gltf", ".glb", ".ply", ".stl")
 
+# Times, rates and free memory in messages.
+VARIES = re.compile(r"(, about )?\d+(\.\d+)? ?(ms|s|min|h|GiB free)\b( left)?|\d+\.\d+ per second")
+
 # What all pictures have: small, with samples on edges, and reflections.
 COMMON = "--size 96x72 --aa 2 --samples 4 --bounces 1 --progress none --color never"
 
@@ -89,11 +92,11 @@ def digests(plan, scene, case):
         flags = [flag.replace("OUT", folder) for flag in shlex.split(f"{COMMON} {CASES[case]}")]
         command = [plan.program.resolve(), "render", scene, *last_of_each(flags), "--device", plan.device, "--threads", "1"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=1800)
-        said = re.sub(r"\d+(\.\d+)? ?(ms|s)\b", "TIME", done.stderr.replace(folder, "OUT").replace(str(Path(scene).parent), "SCENES"))
+        said = done.stderr.replace(folder, "OUT").replace(scene, scene_name(scene))
         # A manifest has the version of the program and checksums of frames, which count themselves.
         written = (path for path in sorted(Path(folder).iterdir()) if path.name != "manifest.json")
         files = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in written}
-        return {"exit": done.returncode, "said": said, "files": files}
+        return {"exit": done.returncode, "said": VARIES.sub("…", said), "files": files}
 
 
 def last_of_each(flags):

@@ -152,11 +152,18 @@ impl Grid {
     }
 
     /// The triangles that it holds, each once, in the order of the list that it was built from.
-    pub(crate) fn held(&self) -> Vec<Triangle> {
+    #[doc(hidden)]
+    pub fn held(&self) -> Vec<Triangle> {
         let mut held: Vec<(u32, &Triangle)> = self.sources.iter().copied().zip(self.triangles.iter()).collect();
         held.sort_unstable_by_key(|(source, _)| *source);
         held.dedup_by_key(|(source, _)| *source);
         held.into_iter().map(|(_, triangle)| *triangle).collect()
+    }
+
+    /// Number of triangles in all cells: one in several counts for each.
+    #[doc(hidden)]
+    pub fn references(&self) -> usize {
+        self.triangles.len()
     }
 
     /// Lowest corner of the outer grid, and edges of its cells.
