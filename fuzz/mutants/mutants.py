@@ -180,12 +180,15 @@ def write_tree(tree, mutants):
 def build(tree, target, packages):
     """Builds all tests. Returns programs by PACKAGE/TARGET, with the folder in which each runs."""
     names = [word for package in packages for word in ("-p", package if package == "lightmesh" else f"lightmesh-{package}")]
-    command = ["cargo", "test", "--no-run", "--lib", "--bins", "--tests", "--message-format=json-render-diagnostics", *names]
+    command = ["cargo", "test", "--no-run", "--lib", "--bins", "--tests", "--message-format=json", *names]
     environment = {**os.environ, "CARGO_TARGET_DIR": str(target), "CARGO_INCREMENTAL": "0"}
     begin, binaries = time.monotonic(), {}
     process = subprocess.Popen(command, cwd=tree, env=environment, stdout=subprocess.PIPE, text=True)
     for line in process.stdout:
         artifact = json.loads(line)
+        # Of diagnostics only errors: switches have parentheses that are not needed everywhere.
+        if artifact["reason"] == "compiler-message" and artifact["message"]["level"] == "error":
+            print(artifact["message"]["rendered"], file=sys.stderr)
         if artifact["reason"] == "compiler-artifact" and artifact["profile"]["test"] and artifact["executable"]:
             folder = Path(artifact["manifest_path"]).parent
             kinds, name = artifact["target"]["kind"], artifact["target"]["name"]

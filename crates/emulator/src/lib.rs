@@ -67,6 +67,7 @@ pub struct Emulator {
     /// Work is done when it is queued, one operation at a time.
     queue: Mutex<Queue>,
     brute_force: bool,
+    slow: bool,
 }
 
 #[derive(Default)]
@@ -111,8 +112,13 @@ impl Emulator {
         Emulator { brute_force: false, ..self }
     }
 
+    /// The same with a clock by which each launch takes a second: from the second image on, launches are as short as they can be.
+    pub fn slow(self) -> Emulator {
+        Emulator { slow: true, ..self }
+    }
+
     fn with_ledger(ledger: Ledger) -> Emulator {
-        Emulator { id: new_id(), ledger: Arc::new(ledger), queue: Mutex::default(), brute_force: true }
+        Emulator { id: new_id(), ledger: Arc::new(ledger), queue: Mutex::default(), brute_force: true, slow: false }
     }
 
     /// Makes the `number`-th allocation from now on fail, where 1 is the next; those after it succeed.
@@ -229,6 +235,6 @@ impl Runtime for Emulator {
     }
 
     fn seconds(&self, from: &Instant, to: &Instant) -> Result<f64, Fault> {
-        Ok(to.duration_since(*from).as_secs_f64())
+        Ok(if self.slow { 1.0 } else { to.duration_since(*from).as_secs_f64() })
     }
 }

@@ -1,4 +1,4 @@
-//! What happens to an image when a device's memory does not suffice, and what a second image costs.
+//! What happens to an image when a device's memory does not suffice, or launches must be short, and what a second image costs.
 #![cfg(unix)]
 
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -196,6 +196,7 @@ fn any_allocation_may_fail() {
             Ok(frame) => {
                 assert!(bits(&frame) == bits(&whole), "allocation {number}: another image");
                 assert!(frame.stats.settings.rows_per_band < ROWS, "allocation {number}");
+                assert_eq!(frame.stats.counts.hits, whole.stats.counts.hits, "allocation {number}: counted twice");
                 recovered += 1;
             }
             Err(RenderError::DeviceMemory { buffer, .. }) => assert!(!buffer.is_empty()),
@@ -360,6 +361,29 @@ fn a_cache_grows_and_forgets_nothing() {
     assert!(large.1 >= 2 * small.1 && large.2 > small.2, "{small:?} {large:?}");
     let again = picture([9, 9]);
     assert_eq!((again.0, again.1, again.2), (0, large.1, large.2));
+}
+
+/// Of the first image, most kernels have one launch; of the second, as many as there are blocks or items.
+#[test]
+#[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
+fn short_launches_make_the_same_picture() {
+    let prepared = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
+    let ways =
+        [(Mode::LightMesh, Lookup::Lists), (Mode::LightMesh, Lookup::Adaptive), (Mode::LightMesh, Lookup::HalfBall)];
+    for (mode, lookup) in ways.into_iter().chain([(Mode::Area, Lookup::Auto), (Mode::RayTrace, Lookup::Auto)]) {
+        let settings = settings().with_mode(mode).with_lookup(lookup).with_samples(4).with_aa(4).with_bounces(1);
+        let emulator = Arc::new(Emulator::new().slow());
+        let cuda = Cuda::new(Arc::clone(&emulator));
+        let [first, second] = [(); 2].map(|()| {
+            let watch = Watch::default();
+            let frame = render_on(&cuda, &prepared, &settings, &watch).unwrap();
+            drop(watch.finished());
+            (bits(&frame), emulator.take_traffic().launches)
+        });
+        assert!(first.0 == second.0, "{mode:?}, {lookup:?}: another image");
+        let more = second.1.iter().filter(|(kernel, launches)| **launches > 2 * first.1[*kernel]).count();
+        assert!(more > 3, "{mode:?}, {lookup:?}: {first:?}, {second:?}", first = first.1, second = second.1);
+    }
 }
 
 #[test]

@@ -49,7 +49,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
                     Twins { samples: 16, ..Twins::new(cuda, subject, index, size(subject)) }.adaptive_shadows();
                 });
                 add("light_mesh_2.1", |cuda, subject, index| {
-                    Twins::new(cuda, subject, index, size(subject)).light_mesh(2.1, Weight::Smooth);
+                    // One image has so many cells that some of a tile have the same hash.
+                    let size = if subject.name == "childpark" && index == 0 { SIZE } else { size(subject) };
+                    Twins::new(cuda, subject, index, size).light_mesh(2.1, Weight::Smooth);
                 });
                 add("light_mesh_3.1", |cuda, subject, index| {
                     Twins::new(cuda, subject, index, size(subject)).light_mesh(3.1, Weight::Quadratic);

@@ -43,6 +43,17 @@ fn one_changed_pixel_has_its_known_weight() {
 }
 
 #[test]
+fn the_largest_difference_counts_wherever_it_is() {
+    let frame = plain(8, 8, [0.0; 3]);
+    let mut changed = frame.clone();
+    // Display values 0.4 and 0.2.
+    changed.color_mut()[5] = [Transfer::Srgb.decode(102); 3];
+    changed.color_mut()[60] = [Transfer::Srgb.decode(51); 3];
+    let comparison = compare(&frame, &changed).unwrap();
+    assert!(close(comparison.max_difference, 0.4), "{}", comparison.max_difference);
+}
+
+#[test]
 fn a_grey_step_has_its_known_values() {
     let grey = |code| plain(16, 16, [Transfer::Srgb.decode(code); 3]);
     let comparison = compare(&grey(102), &grey(153)).unwrap();

@@ -133,6 +133,14 @@ fn cameras_with_two_angles_are_one_warning() {
 }
 
 #[test]
+fn a_rectangle_that_faces_down_has_an_up() {
+    let light = "[[light]]\nkind = \"rectangle\"\nposition = [0, 5, 0]\ndirection = [0, -1, 0]\nsize = [2, 4]\n";
+    let scene = open(&format!("{light}[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n"));
+    let LightKind::Rectangle { half_u, half_v, .. } = scene.lights[0].kind else { panic!("a rectangle") };
+    assert_eq!((half_u, half_v), (Vec3::NEG_X, 2.0 * Vec3::Z));
+}
+
+#[test]
 fn lights_of_all_kinds() {
     let scene = open(
         r#"
