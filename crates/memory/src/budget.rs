@@ -2,8 +2,6 @@
 
 use crate::{Bytes, available, ceiling, held};
 
-/// Allocations below this are not worth asking the system: a million of them would be noticed by the [allocator](crate::Counting).
-const SMALL: u64 = 1 << 20;
 /// One part in this many of the free memory is left to others, unless a limit was given.
 const RESERVE: u64 = 8;
 
@@ -37,6 +35,10 @@ impl Budget {
         Budget { limit }
     }
 
+    /// Allocations of fewer bytes pass unchecked, as they are not worth asking the system: a million of them would be noticed by the
+    /// [allocator](crate::Counting).
+    pub const SMALL: u64 = 1 << 20;
+
     /// The limit that was set.
     pub fn limit(&self) -> Option<u64> {
         self.limit
@@ -59,7 +61,7 @@ impl Budget {
     /// # Errors
     /// [`Short`] if they exceed what is left.
     pub fn check(&self, needed: u64) -> Result<(), Short> {
-        if needed < SMALL {
+        if needed < Budget::SMALL {
             return Ok(());
         }
         match self.left() {

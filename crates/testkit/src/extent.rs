@@ -1,6 +1,6 @@
 //! How much runs: a part of large products of cases, or all of them with `LIGHTMESH_TESTS=all`.
 //!
-//! The part is chosen so that it finds what the whole finds: `fuzz/mutants/mutants.py` breaks the code in many places and checks that.
+//! The part is to find what the whole finds: `fuzz/mutants/mutants.py` breaks the code in many places, and shows what the part notices.
 
 use std::env::var;
 

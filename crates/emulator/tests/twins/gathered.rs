@@ -62,7 +62,7 @@ fn gathered(frame: &Frame) -> Vec<[u32; 3]> {
 
 fn same_light<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: usize) {
     let scene = subject.prepared(structure);
-    let size = if subject.small || runs_all() { SIZE } else { SMALL };
+    let size = if subject.runs_whole() { SIZE } else { SMALL };
     let settings = settings(subject, 0.0, size).with_acceleration(ACCELERATIONS[structure].clone());
     let [host, device] = same_frame(cuda, scene, settings);
     let is_lit = !scene.geometry.triangles.stored().is_empty() && !scene.scene.lights.list.is_empty();

@@ -58,7 +58,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         for way in WAYS {
             for kind in [Kind::Picture, Kind::Samples, Kind::Points] {
                 let name = format!("{}::{}::{}", subject.name, kind.name(), way.0);
-                let size = if subject.small || runs_all() { SIZE } else { SMALL };
+                let size = if subject.runs_whole() { SIZE } else { SMALL };
                 let case = Case::new(name, move |cuda| same(cuda, subject, way, kind, 0, size));
                 cases.push(case.only_if(way.0 == "lists" || CHOSEN.contains(&(way.0, subject.name, kind))));
             }
@@ -136,7 +136,7 @@ fn same<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way, kind: Ki
     match kind {
         Kind::Picture => same_picture(cuda, subject, structure, settings),
         Kind::Samples => {
-            let samples = if subject.small || runs_all() { 6 } else { 3 };
+            let samples = if subject.runs_whole() { 6 } else { 3 };
             same_picture(cuda, subject, structure, settings.with_aa(samples));
         }
         Kind::Points => same_at_points(cuda, subject, structure, settings),

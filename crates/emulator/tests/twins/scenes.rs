@@ -6,7 +6,9 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 use lightmesh_render::{Acceleration, PreparedScene, Unobserved, View};
 use lightmesh_scene::{Falloff, LightKind, Material, Scene, Sky, SunPosition, Up};
-use lightmesh_testkit::{SceneDraft, glazed, half_plane, many_balls, mirror_room, perforated, pile, soup, thicket};
+use lightmesh_testkit::{
+    SceneDraft, glazed, half_plane, many_balls, mirror_room, perforated, pile, runs_all, soup, thicket,
+};
 
 /// The structures, in the order of [`Subject::prepared`].
 pub(crate) const ACCELERATIONS: [Acceleration; 3] =
@@ -64,6 +66,11 @@ pub(crate) static MIRRORS: Subject = subject("mirrors", 0.25, true, || mirror_ro
 pub(crate) static LAMPS: Subject = subject("lamps", 0.5, true, lamps);
 
 impl Subject {
+    /// Whether comparisons have their whole size: those of scenes with many triangles are small by default.
+    pub(crate) fn runs_whole(&self) -> bool {
+        self.small || runs_all()
+    }
+
     /// The scene.
     pub(crate) fn scene(&'static self) -> &'static Scene {
         self.scene.get_or_init(self.build)

@@ -9,7 +9,6 @@ use lightmesh_render::backend::{
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints};
 use lightmesh_render::{Job, LightGroup, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
 use lightmesh_scene::Weight;
-use lightmesh_testkit::runs_all;
 
 use crate::scenes::{SUBJECTS, Subject, THICKET};
 use crate::trials::{Case, Target};
@@ -87,7 +86,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 }
 
 fn size(subject: &Subject) -> [u32; 2] {
-    if subject.small || runs_all() { SIZE } else { SMALL }
+    if subject.runs_whole() { SIZE } else { SMALL }
 }
 
 /// The same rays and hits on both sides.

@@ -9,8 +9,6 @@ use super::{MeshFault, short};
 
 /// Bits of the largest key.
 const DIFFERENCE_BITS: u32 = 63;
-/// Bytes of a request that a budget does not let pass unchecked.
-const CHECKED: u64 = 1 << 20;
 /// Numbers that are read at once.
 const AT_ONCE: usize = 1 << 16;
 
@@ -74,7 +72,7 @@ impl<R: Read> Input<R> {
             // A budget lets small requests pass; a thousand of them are not small.
             self.unchecked += (2 * (values.len() + more) * size_of::<T>()) as u64;
             short(self.unchecked, self.budget)?;
-            if self.unchecked >= CHECKED {
+            if self.unchecked >= Budget::SMALL {
                 self.unchecked = 0;
             }
         }
