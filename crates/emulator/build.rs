@@ -75,6 +75,8 @@ fn compile(
     build.cargo_metadata(false).cpp(true).std("c++17").includes(include);
     // The same bits as on a device: no operations are fused or reordered.
     build.opt_level(2).flag("-ffp-contract=off").flag("-fno-strict-aliasing").flag("-fno-math-errno");
+    // Nothing replaces functions of the library, so they may be inlined.
+    build.flag("-fvisibility=hidden");
     // Makes reads of uninitialised variables visible.
     build.flag_if_supported("-ftrivial-auto-var-init=pattern");
     // Fibres use `longjmp` to switch to another stack, which a fortified one rejects.

@@ -66,7 +66,7 @@ bool Machine::run(const Launch &launch, unsigned block) {
     running = &idle_fibre();
     running->thread = in_order(begun++);
     busy = true;
-    Fibre::change(host, *running);
+    change(host, running->place);
     busy = false;
     return !failed;
 }
@@ -75,7 +75,7 @@ bool Machine::run(const Launch &launch, unsigned block) {
 
 Fibre &Machine::idle_fibre() {
     if (idle.empty()) {
-        fibres.push_back(std::make_unique<Fibre>(emulator::live));
+        fibres.push_back(std::make_unique<Fibre>(emulator::live, fibres.size()));
         return *fibres.back();
     }
     Fibre *fibre = idle.back();
@@ -103,7 +103,7 @@ void Machine::live() {
                 fail("something was written past the end of %s (%zu bytes)", variable->name, variable->end - variable->begin);
             }
             idle.push_back(&self);
-            Fibre::change(self.place, host);
+            change(self.place, host);
         } else {
             dead_end();
         }
@@ -118,30 +118,35 @@ void Machine::enter(unsigned thread) {
 
 // Continues with the first thread that is ready.
 void Machine::pass_on(Fibre &from) {
-    running = lanes[ready[ready_first]].fibre;
-    ready_first = (ready_first + 1) % ready.size();
+    running = next_ready();
+    if (running != &from) change(from.place, running->place);
+}
+
+Fibre *Machine::next_ready() {
+    Fibre *const next = lanes[ready[ready_first]].fibre;
+    if (++ready_first == ready.size()) ready_first = 0;
     --ready_count;
-    if (running != &from) Fibre::change(from, *running);
+    return next;
 }
 
 // Lets other threads run until one has released the running thread.
 void Machine::wait() {
     Fibre &self = *running;
     if (ready_count > 0) {
-        pass_on(self);
+        running = next_ready();
     } else if (begun < launch->threads) {
         running = &idle_fibre();
         running->thread = in_order(begun++);
-        Fibre::change(self, *running);
     } else {
         dead_end();
     }
+    change(self.place, running->place);
     enter(self.thread);
 }
 
 void Machine::release(unsigned thread) {
-    ready[(ready_first + ready_count) % ready.size()] = thread;
-    ++ready_count;
+    const size_t next = ready_first + ready_count++;
+    ready[next < ready.size() ? next : next - ready.size()] = thread;
 }
 
 // ---- Collectives and barriers ----
@@ -261,11 +266,12 @@ const Machine::Shared *Machine::overrun() const {
 
 // ---- Functions called by kernels ----
 
-Bits meet(Meeting what, unsigned mask, Bits value, unsigned source) {
+// Whole, with the switch between fibres: few calls return on another stack.
+__attribute__((flatten)) Bits meet(Meeting what, unsigned mask, Bits value, unsigned source) {
     return current->meet(what, mask, value, source);
 }
 
-unsigned meet_block(bool value) {
+__attribute__((flatten)) unsigned meet_block(bool value) {
     return current->meet_block(value);
 }
 

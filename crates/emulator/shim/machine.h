@@ -1,7 +1,6 @@
 // The machines that run blocks: one for each host thread that takes part in a launch.
 #pragma once
 
-#include <csetjmp>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -69,7 +68,8 @@ class Machine {
 
     unsigned in_order(unsigned k) const { return reversed ? launch->threads - 1 - k : k; }
     void enter(unsigned thread);
-    Fibre &idle_fibre();
+    __attribute__((noinline)) Fibre &idle_fibre();
+    Fibre *next_ready();
     void wait();
     bool complete(unsigned warp, Meeting what, unsigned mask) const;
     void settle(unsigned warp, Meeting what, unsigned mask);
@@ -98,7 +98,7 @@ class Machine {
     std::vector<std::unique_ptr<Fibre>> fibres;
     std::vector<Fibre *> idle;
     Fibre *running;
-    jmp_buf host;
+    Place host;
     bool failed;
     // Whether a block is running.
     bool busy;
