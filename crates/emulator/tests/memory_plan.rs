@@ -196,7 +196,9 @@ fn any_allocation_may_fail() {
             Ok(frame) => {
                 assert!(bits(&frame) == bits(&whole), "allocation {number}: another image");
                 assert!(frame.stats.settings.rows_per_band < ROWS, "allocation {number}");
-                assert_eq!(frame.stats.counts.hits, whole.stats.counts.hits, "allocation {number}: counted twice");
+                // The host counts rays, the device hits: neither counts what was begun again.
+                let counted = |frame: &Frame| [frame.stats.counts.rays, frame.stats.counts.hits];
+                assert_eq!(counted(&frame), counted(&whole), "allocation {number}: counted twice");
                 recovered += 1;
             }
             Err(RenderError::DeviceMemory { buffer, .. }) => assert!(!buffer.is_empty()),

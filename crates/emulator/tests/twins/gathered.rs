@@ -8,7 +8,7 @@ use lightmesh_render::{AmbientSource, Frame, Kept, Quality, Settings, Step, Unob
 use lightmesh_testkit::runs_all;
 
 use crate::pictures::same_frame;
-use crate::scenes::{ACCELERATIONS, GLAZED, LAMPS, SUBJECTS, SURROUNDED, Subject};
+use crate::scenes::{ACCELERATIONS, GLAZED, LAMPS, STEPS, SUBJECTS, SURROUNDED, Subject};
 use crate::trials::{Case, Target};
 
 const SIZE: [u32; 2] = [33, 27];
@@ -38,6 +38,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         let name = format!("{}::gathered::files", subject.name);
         cases.push(Case::new(name, move |cuda| same_files(cuda, subject)).only_if(chosen));
     }
+    cases.push(Case::new("steps::gathered::0".to_owned(), |cuda| same_light(cuda, &STEPS, 0)));
     for subject in [&SURROUNDED, &LAMPS] {
         let name = format!("{}::gathered::rays", subject.name);
         cases.push(Case::new(name, move |cuda| same_by_rays(cuda, subject)));
@@ -67,6 +68,10 @@ fn same_light<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: u
     let [host, device] = same_frame(cuda, scene, settings);
     let is_lit = !scene.geometry.triangles.stored().is_empty() && !scene.scene.lights.list.is_empty();
     assert_eq!(host.stats.counts.gather_rays > 0, is_lit, "{}", host.stats.counts.gather_rays);
+    if R::EXACT {
+        let [host, device] = [&host, &device].map(|frame| frame.stats.counts.gather_rays);
+        assert_eq!(host, device, "what is known is gathered again");
+    }
     let differ = gathered(&host).iter().zip(gathered(&device)).filter(|(a, b)| **a != *b).count();
     // Where one ray to a light passes an edge, all that take light from its site differ.
     assert!(differ <= if R::EXACT { 0 } else { gathered(&host).len() / 20 }, "{differ} differ");

@@ -64,6 +64,8 @@ pub(crate) static MIRRORS: Subject = subject("mirrors", 0.25, true, || mirror_ro
 
 /// For gathered light.
 pub(crate) static LAMPS: Subject = subject("lamps", 0.5, true, lamps);
+/// For gathered light, too: parallel planes within a cell.
+pub(crate) static STEPS: Subject = subject("steps", 0.5, true, steps);
 
 impl Subject {
     /// Whether comparisons have their whole size: those of scenes with many triangles are small by default.
@@ -133,6 +135,17 @@ fn lamps() -> Scene {
     scene.add_lamps();
     assert!(scene.lights.len() > 4 && scene.lights.iter().all(|light| light.surface.is_some()));
     scene
+}
+
+/// Stairs beside a wall, with steps so low that several belong to one cell.
+fn steps() -> Scene {
+    let draft = SceneDraft::new().cuboid([-3.0, -0.5, -3.5], [3.0, 0.0, 3.0]).cuboid([-3.0, 0.0, -3.5], [3.0, 3.0, -3.0]);
+    let step = |draft: SceneDraft, index: i32| {
+        let front = 1.5 - 0.25 * f64::from(index);
+        draft.cuboid([-1.5, 0.0, front - 0.25], [1.5, 0.12 * f64::from(index + 1), front])
+    };
+    let draft = (0..16).fold(draft, step).light(LightKind::Sphere { position: Vec3::new(-2.0, 4.0, 3.0), radius: 0.5 });
+    draft.camera([1.0, 3.0, 4.5], [0.0, 0.8, -0.5]).finish("steps")
 }
 
 /// A light of every kind over a pile and a mirror, far from the world's origin.

@@ -11,8 +11,8 @@ use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
 
-/// Slots of a new table.
-const FIRST_CAPACITY: usize = 1 << 14;
+/// Slots of a new table: few, so that small scenes grow it, too.
+const FIRST_CAPACITY: usize = 1 << 10;
 /// How many times larger the next table is.
 const GROWTH: usize = 4;
 
