@@ -289,7 +289,7 @@ class Trials:
             environment["LIGHTMESH_TESTS"] = "all"
         failed, passed, has_ignored = "", 0, False
         process = subprocess.Popen([program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace", start_new_session=True)
+                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace", process_group=0)
         hangs = threading.Event()
         watch = threading.Timer(self.plan.patience, lambda: hangs.set() or stop(process))
         watch.start()
