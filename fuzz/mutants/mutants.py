@@ -36,7 +36,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PACKAGES = ["memory", "files", "scene", "image", "layout", "render", "emulator", "lightmesh", "cli"]
+PACKAGES = ["memory", "files", "scene", "scene-tests", "image", "layout", "render", "emulator", "lightmesh", "cli"]
 """Packages whose tests are run, if not told otherwise: those that make images."""
 VARIABLE = "LIGHTMESH_MUTANT"
 FAILED = re.compile(r"^test (.+?)(?: - should panic)? \.\.\. FAILED")
@@ -193,7 +193,9 @@ def build(tree, target, packages):
             folder = Path(artifact["manifest_path"]).parent
             kinds, name = artifact["target"]["kind"], artifact["target"]["name"]
             name = name if "test" in kinds else "bin" if "bin" in kinds else "lib"
-            binaries[f"{folder.name}/{name}"] = (artifact["executable"], folder)
+            # Tests that are a package of their own are in the folder of what they test.
+            package = folder.parent.name if folder.name == "tests" else folder.name
+            binaries[f"{package}/{name}"] = (artifact["executable"], folder)
     if process.wait() != 0:
         sys.exit("the tree with all errors, none of which is turned on, does not compile")
     print(f"built {len(binaries)} test programs in {time.monotonic() - begin:.0f} s", flush=True)

@@ -8,42 +8,42 @@ use zlib_rs::adler32::{adler32, adler32_combine};
 use zlib_rs::{Deflate, DeflateFlush, Status};
 
 /// Logarithm of the window in which repetitions are found.
-const WINDOW: u8 = 15;
+pub const WINDOW: u8 = 15;
 /// Bytes that a stored block and the end of a stream need beyond the data.
 const SPARE: usize = 64;
 
 /// The start of a zlib stream: a window of 32 KiB, compressed fast.
-pub(crate) const HEADER: [u8; 2] = [0x78, 0x01];
+pub const HEADER: [u8; 2] = [0x78, 0x01];
 
 /// A part of a deflate stream, aligned to bytes.
-pub(crate) struct Piece {
+pub struct Piece {
     /// Whole blocks, none of them the last.
-    pub(crate) bytes: Vec<u8>,
+    pub bytes: Vec<u8>,
     adler: u32,
     length: u64,
 }
 
 impl Piece {
     /// Compresses `data` at a level from 1 (fastest) to 9.
-    pub(crate) fn new(data: &[u8], level: i32) -> Piece {
+    pub fn new(data: &[u8], level: i32) -> Piece {
         let bytes = compress(data, Deflate::new(level, false, WINDOW), DeflateFlush::SyncFlush);
         Piece { bytes, adler: adler32(1, data), length: data.len() as u64 }
     }
 }
 
 /// The checksum of the data of all pieces so far, of which `piece` is the next; it starts at 1.
-pub(crate) fn checksum(before: u32, piece: &Piece) -> u32 {
+pub fn checksum(before: u32, piece: &Piece) -> u32 {
     adler32_combine(before, piece.adler, piece.length)
 }
 
 /// The end of a zlib stream: an empty stored block that is the last, and the checksum of all pieces.
-pub(crate) fn end(checksum: u32) -> [u8; 9] {
+pub fn end(checksum: u32) -> [u8; 9] {
     let [a, b, c, d] = checksum.to_be_bytes();
     [1, 0, 0, 0xff, 0xff, a, b, c, d]
 }
 
 /// A whole zlib stream.
-pub(crate) fn zlib(data: &[u8], level: i32) -> Vec<u8> {
+pub fn zlib(data: &[u8], level: i32) -> Vec<u8> {
     compress(data, Deflate::new(level, true, WINDOW), DeflateFlush::Finish)
 }
 
@@ -60,63 +60,5 @@ fn compress(data: &[u8], mut deflate: Deflate, flush: DeflateFlush) -> Vec<u8> {
             return bytes;
         }
         bytes.resize(2 * bytes.len(), 0);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Text-like bytes, noise, and runs.
-    fn data(length: usize) -> Vec<u8> {
-        let noise = |index: usize| (index as u32).wrapping_mul(2_654_435_761).rotate_left(9) as u8;
-        (0..length)
-            .map(|index| match index / 1000 % 3 {
-                0 => b"light mesh"[index % 10],
-                1 => noise(index),
-                _ => 7,
-            })
-            .collect()
-    }
-
-    fn inflated(stream: &[u8]) -> Vec<u8> {
-        let mut inflate = zlib_rs::Inflate::new(true, WINDOW);
-        let mut output = vec![0; 1 << 20];
-        let status = inflate.decompress(stream, &mut output, zlib_rs::InflateFlush::Finish).unwrap();
-        assert_eq!((status, inflate.total_in() as usize), (Status::StreamEnd, stream.len()));
-        output.truncate(inflate.total_out() as usize);
-        output
-    }
-
-    fn joined(pieces: &[&[u8]], level: i32) -> Vec<u8> {
-        let (mut stream, mut sum) = (HEADER.to_vec(), 1);
-        for data in pieces {
-            let piece = Piece::new(data, level);
-            sum = checksum(sum, &piece);
-            stream.extend(piece.bytes);
-        }
-        stream.extend(end(sum));
-        stream
-    }
-
-    #[test]
-    fn pieces_join_to_one_stream() {
-        let data = data(70_001);
-        for level in [1, 2, 6, 9] {
-            for size in [1, 7, 4096, 70_001] {
-                let pieces: Vec<&[u8]> = data.chunks(size).take(300).collect();
-                assert_eq!(inflated(&joined(&pieces, level)), pieces.concat(), "level {level}, pieces of {size}");
-            }
-            assert_eq!(inflated(&zlib(&data, level)), data, "level {level}");
-        }
-        assert!(inflated(&joined(&[], 2)).is_empty() && inflated(&joined(&[&[], &[]], 2)).is_empty());
-    }
-
-    #[test]
-    fn a_wrong_checksum_is_noticed() {
-        let mut stream = joined(&[b"one", b"two"], 2);
-        *stream.last_mut().unwrap() ^= 1;
-        let mut inflate = zlib_rs::Inflate::new(true, WINDOW);
-        assert!(inflate.decompress(&stream, &mut [0; 100], zlib_rs::InflateFlush::Finish).is_err());
     }
 }

@@ -46,6 +46,8 @@ mod exposure;
 mod exr;
 mod format;
 mod frame;
+#[doc(hidden)]
+pub mod internals;
 #[cfg(feature = "jpeg")]
 mod jpg;
 mod load;

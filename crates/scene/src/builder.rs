@@ -211,7 +211,7 @@ impl SceneBuilder {
         transform: &DMat4,
         material: impl Fn(usize) -> u32,
     ) {
-        let first = self.vertices.len() as u32;
+        let first = self.vertices.count() as u32;
         self.vertices.add(P::slice(part.positions), transform);
 
         let place_normal = normal_placement(transform);
@@ -276,7 +276,7 @@ impl SceneBuilder {
 
     /// Number of vertices so far.
     pub fn vertex_count(&self) -> usize {
-        self.vertices.len()
+        self.vertices.count()
     }
 
     /// Lowest and highest corner of the bounding box of all finite vertices so far; `None` if there are none.
@@ -331,7 +331,7 @@ impl SceneBuilder {
 
     /// Attributes of some vertices are those of all.
     fn fill(&mut self) {
-        let vertices = self.vertices.len() as u32;
+        let vertices = self.vertices.count() as u32;
         fill_to(&mut self.normals, vertices, Vec3::ZERO, false);
         fill_to(&mut self.uvs, vertices, Vec2::ZERO, false);
         fill_to(&mut self.colors, vertices, Vec3::ONE, false);
@@ -388,7 +388,7 @@ pub(crate) fn reserve<T>(elements: &mut Vec<T>, more: usize) -> bool {
 
 /// Normals are transformed by the inverse transpose of the transform of positions. Those of unit length keep their bits if they are not
 /// turned: a scene that is written and read again stays the same.
-pub(crate) fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
+pub fn normal_placement(transform: &DMat4) -> impl Fn(Vec3) -> Vec3 + use<> {
     const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
     let stays = DMat3::from_mat4(*transform) == DMat3::IDENTITY;
     let matrix = transform.inverse().transpose();
@@ -423,87 +423,4 @@ fn local_origin((min, max): (DVec3, DVec3)) -> DVec3 {
     }
     let unit = radius.log2().ceil().exp2();
     (center / unit).round() * unit
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CORNERS: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
-
-    fn part() -> MeshPart<'static> {
-        MeshPart { positions: &CORNERS, triangles: &[[0, 1, 2]], ..Default::default() }
-    }
-
-    #[test]
-    fn a_scene_at_home_keeps_its_coordinates() {
-        let mut builder = SceneBuilder::new();
-        builder.add(part(), &DMat4::IDENTITY, |_| 0).unwrap();
-        let (origin, mesh) = builder.finish();
-        assert_eq!(origin, DVec3::ZERO);
-        assert_eq!(mesh.corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
-    }
-
-    #[test]
-    fn a_scene_far_away_keeps_its_shape() {
-        let offset = DVec3::new(1e6 + 0.125, -3e5, 7e4);
-        let mut builder = SceneBuilder::new();
-        builder.add(part(), &DMat4::from_translation(offset), |_| 0).unwrap();
-        let (origin, mesh) = builder.finish();
-        let [a, b, c] = mesh.corners(0);
-        assert!((b - a - Vec3::X).length() < 1e-6 && (c - a - Vec3::Y).length() < 1e-6);
-        assert!((origin + a.as_dvec3() - offset).length() < 1e-6);
-    }
-
-    #[test]
-    fn a_mirror_keeps_the_front_in_front() {
-        let mut builder = SceneBuilder::new();
-        builder.add(part(), &DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)), |_| 0).unwrap();
-        let [a, b, c] = builder.finish().1.corners(0);
-        assert!((b - a).cross(c - a).z > 0.0);
-    }
-
-    #[test]
-    fn a_mesh_handed_over_is_the_same_as_a_part_added() {
-        fn check<P: Position>(positions: [P; 3], placement: DMat4) {
-            let loaded = || LoadedMesh {
-                positions: positions.to_vec(),
-                normals: vec![Vec3::new(1.0, 2.0, 3.0); 3],
-                uvs: Vec::new(),
-                colors: vec![Vec3::X; 3],
-                triangles: vec![[0, 1, 2]],
-                materials: vec![7],
-                groups: Vec::new(),
-                objects: Objects::default(),
-            };
-            let (mut added, mut taken) = (SceneBuilder::new(), SceneBuilder::new());
-            // The first is moved in, the second is appended as a copy.
-            for _ in 0..2 {
-                added.add(loaded().part(), &placement, |_| 7).unwrap();
-                taken.take(loaded(), &placement);
-            }
-            assert_eq!(added.bounds(), taken.bounds());
-            let (added, taken) = (added.finish().1, taken.finish().1);
-            assert_eq!((added.positions, added.normals), (taken.positions, taken.normals));
-            assert_eq!((added.triangles, added.materials), (taken.triangles, taken.materials));
-            assert_eq!((added.colors, added.uvs), (taken.colors, taken.uvs));
-        }
-        let mirrored = DMat4::from_scale(DVec3::new(-2.0, 3.0, 1.0)) * DMat4::from_rotation_x(1.0);
-        for placement in [DMat4::IDENTITY, mirrored] {
-            check(CORNERS, placement);
-            check(CORNERS.map(|corner| corner.as_vec3()), placement);
-        }
-    }
-
-    #[test]
-    fn parts_without_normals_stand_beside_parts_with() {
-        let mut builder = SceneBuilder::new();
-        builder.add(part(), &DMat4::IDENTITY, |_| 0).unwrap();
-        builder.add(MeshPart { normals: &[Vec3::Z; 3], ..part() }, &DMat4::IDENTITY, |_| 1).unwrap();
-        builder.add(part(), &DMat4::IDENTITY, |_| 2).unwrap();
-        let mesh = builder.finish().1;
-        assert_eq!(mesh.normals.len(), 9);
-        assert_eq!((mesh.normals[0], mesh.normals[3], mesh.normals[8]), (Vec3::ZERO, Vec3::Z, Vec3::ZERO));
-        assert_eq!(mesh.materials, [0, 1, 2]);
-    }
 }

@@ -56,7 +56,7 @@ pub(crate) const LARGEST_COORDINATE: f64 = 1e18;
 
 /// Collects the content of a file; [`Draft::finish`] turns it into a [`Scene`].
 #[derive(Debug)]
-pub(crate) struct Draft {
+pub struct Draft {
     path: PathBuf,
     strict: bool,
     smooth: Option<CreaseAngle>,
@@ -82,8 +82,10 @@ pub(crate) struct Draft {
     /// Each light with its world position; the light's own position is not used.
     pub(crate) lights: Vec<(Light, DVec3)>,
     pub(crate) materials: Vec<Material>,
-    pub(crate) textures: Vec<Texture>,
-    pub(crate) texture_files: TextureFiles,
+    /// Those of its materials.
+    pub textures: Vec<Texture>,
+    /// Where they are from.
+    pub texture_files: TextureFiles,
     /// The first texture for which there is not enough memory: there will be no scene.
     pub(crate) too_large: Option<LoadError>,
     /// Index of the material for triangles without one, once there is one.
@@ -105,7 +107,7 @@ pub(crate) struct Draft {
 
 impl Draft {
     /// An empty scene, to be read from `path`.
-    pub(crate) fn new(path: &Path, options: &LoadOptions) -> Draft {
+    pub fn new(path: &Path, options: &LoadOptions) -> Draft {
         Draft {
             path: path.to_owned(),
             strict: options.strict,
@@ -188,7 +190,7 @@ impl Draft {
 
     /// Adds placed triangles. Triangles with a NaN vertex, or one too far away to compute with, are ignored and counted in a
     /// warning.
-    pub(crate) fn add<P: Position>(
+    pub fn add<P: Position>(
         &mut self,
         part: MeshPart<P>,
         transform: &DMat4,
@@ -324,7 +326,7 @@ impl Draft {
     }
 
     /// [`Draft::add`] for a mesh passed by value. If it has no normals, it gets smooth ones, if the options ask for them.
-    pub(crate) fn take<P: Position>(&mut self, mut mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
+    pub fn take<P: Position>(&mut self, mut mesh: LoadedMesh<P>, transform: &DMat4) -> Result<(), LoadError> {
         self.smooth(&mut mesh, transform)?;
         // The first mesh of a scene is not copied.
         let copied = if self.builder.vertex_count() > 0 { mesh.part() } else { MeshPart::default() };
@@ -456,7 +458,7 @@ impl Draft {
     /// # Errors
     ///
     /// [`LoadError::Warnings`] if the options are strict and there are warnings.
-    pub(crate) fn finish(mut self) -> Result<Scene, LoadError> {
+    pub fn finish(mut self) -> Result<Scene, LoadError> {
         if let Some(error) = self.too_large {
             return Err(error);
         }
@@ -527,6 +529,3 @@ fn usable_in<P: Position>(transform: &DMat4) -> impl Fn(&P) -> bool + use<'_, P>
 fn shape_of<P: Position>(part: &MeshPart<P>) -> Shape {
     Shape { positions: P::owned(part.positions.to_vec()), normals: part.normals.to_vec(), morph: None }
 }
-
-#[cfg(test)]
-mod tests;

@@ -3,11 +3,9 @@
 mod decode;
 mod irradiance;
 mod levels;
-mod sky;
+pub(crate) mod sky;
 mod sun;
-mod sun_position;
-#[cfg(test)]
-mod tests;
+pub(crate) mod sun_position;
 
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 use std::sync::OnceLock;
@@ -152,12 +150,12 @@ fn direction(frame: [Vec3; 3], size: [u32; 2], [column, row]: [u32; 2]) -> Vec3 
 }
 
 /// The direction with this azimuth, clockwise from north, and elevation, both in radians.
-fn from_angles([east, up, north]: [Vec3; 3], azimuth: f32, elevation: f32) -> Vec3 {
+pub fn from_angles([east, up, north]: [Vec3; 3], azimuth: f32, elevation: f32) -> Vec3 {
     elevation.cos() * (azimuth.sin() * east + azimuth.cos() * north) + elevation.sin() * up
 }
 
 /// The luminance of a colour in linear sRGB.
-fn luminance(color: Vec3) -> f32 {
+pub fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 

@@ -6,7 +6,7 @@
 mod lights;
 mod rays;
 mod rooms;
-mod sight;
+pub(crate) mod sight;
 
 use std::cell::LazyCell;
 use std::sync::Arc;
@@ -37,12 +37,12 @@ pub struct UnknownCamera {
 }
 
 /// Vertical field of view of the camera that frames a scene, degrees.
-const VFOV: f32 = 40.0;
+pub const VFOV: f32 = 40.0;
 /// With more triangles than this, instances count as boxes where a view is chosen.
 const OUTLINE: usize = 1 << 21;
 
 /// Share of the image's half height that the framed scene fills.
-const FILL: f32 = 0.92;
+pub const FILL: f32 = 0.92;
 
 /// Position of the framing camera relative to the scene's centre: to the right, above and in front.
 const VIEW: [f32; 3] = [0.55, 0.45, 1.0];
@@ -220,7 +220,7 @@ fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera) -> Vec3 {
 }
 
 /// One of the eight corners of a box.
-fn corner(Bounds { min, max }: &Bounds, i: u32) -> Vec3 {
+pub fn corner(Bounds { min, max }: &Bounds, i: u32) -> Vec3 {
     let pick = |bit: u32, low: f32, high: f32| if i & bit == 0 { low } else { high };
     Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z))
 }
@@ -229,117 +229,4 @@ fn corner(Bounds { min, max }: &Bounds, i: u32) -> Vec3 {
 fn framed(bounds: Bounds) -> Bounds {
     let center = if bounds.is_empty() { Vec3::ZERO } else { bounds.center() };
     if bounds.diagonal() > 0.0 { bounds } else { Bounds { min: center - 0.5, max: center + 0.5 } }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::SceneBuilder;
-
-    fn corners(bounds: Bounds) -> [Vec3; 8] {
-        std::array::from_fn(|i| corner(&bounds, i as u32))
-    }
-
-    /// The corners of a box.
-    fn scene(min: Vec3, max: Vec3) -> Scene {
-        let mut scene = SceneBuilder::new().finish_scene("test");
-        scene.geometry_mut().mesh.positions = corners(Bounds { min, max }).to_vec();
-        scene.geometry_mut().mesh.triangles = vec![[0, 1, 2]];
-        scene
-    }
-
-    /// How far points go to the right, left, up and down from the image's centre, in half heights.
-    fn extents_in_picture(points: &[Vec3], camera: &Camera) -> [f32; 4] {
-        let (right, up, forward) = camera.basis();
-        let tangent = (0.5 * VFOV).to_radians().tan();
-        points.iter().map(|&point| point - camera.position).fold([f32::NEG_INFINITY; 4], |extents, p| {
-            let scale = 1.0 / (tangent * p.dot(forward));
-            let sides = [p.dot(right), -p.dot(right), p.dot(up), -p.dot(up)];
-            std::array::from_fn(|side| extents[side].max(scale * sides[side]))
-        })
-    }
-
-    fn assert_framed(points: &[Vec3], camera: &Camera) {
-        let extents = extents_in_picture(points, camera);
-        let most = extents.into_iter().fold(0.0, f32::max);
-        assert!((most - FILL).abs() < 1e-3, "{extents:?}");
-        // It fills the image from one border to the other.
-        let fills = |axis: usize| extents[axis].min(extents[axis + 1]) > FILL - 1e-3;
-        assert!(fills(0) || fills(2), "{extents:?}");
-    }
-
-    #[test]
-    fn all_corners_are_in_the_picture_and_fill_it() {
-        let boxes = [
-            (Vec3::splat(-1.0), Vec3::ONE),
-            (Vec3::new(100.0, 0.0, -7.0), Vec3::new(160.0, 0.0, 20.0)),
-            (Vec3::ZERO, Vec3::new(1e-3, 2.0, 1e-3)),
-            (Vec3::splat(1e5), Vec3::splat(2e5)),
-        ];
-        for (min, max) in boxes {
-            for up in [Up::Y, Up::Z] {
-                assert_framed(&corners(Bounds { min, max }), &scene(min, max).default_camera(up));
-            }
-        }
-    }
-
-    #[test]
-    fn what_does_not_fill_its_box_fills_the_picture() {
-        let ball: Vec<Vec3> = (0..200)
-            .map(|i| {
-                let (z, turn) = (i as f32 / 99.5 - 1.0, 2.4 * i as f32);
-                Vec3::new((1.0 - z * z).sqrt() * turn.cos(), (1.0 - z * z).sqrt() * turn.sin(), z)
-            })
-            .collect();
-        let mut round = scene(Vec3::ZERO, Vec3::ONE);
-        round.geometry_mut().mesh.positions = ball.clone();
-        assert_framed(&ball, &round.default_camera(Up::Y));
-    }
-
-    #[test]
-    fn an_empty_scene_has_a_camera_and_a_light_too() {
-        let empty = SceneBuilder::new().finish_scene("empty");
-        let camera = empty.default_camera(Up::Y);
-        assert!(camera.position.is_finite() && camera.position.length() > 1.0);
-        assert!(empty.default_lights(&camera).iter().all(|light| light.position().unwrap().is_finite()));
-    }
-
-    #[test]
-    fn the_key_light_is_above_the_camera_and_a_weaker_one_on_its_other_side() {
-        for up in [Up::Y, Up::Z] {
-            let scene = scene(Vec3::splat(-3.0), Vec3::splat(5.0));
-            let camera = scene.default_camera(up);
-            let (right, ..) = camera.basis();
-            let [key, fill] = scene.default_lights(&camera);
-            let from_camera = |light: &Light| light.position().unwrap() - camera.position;
-            assert!(from_camera(&key).dot(up.axis()) > from_camera(&fill).dot(up.axis()) + 1.0);
-            assert!(from_camera(&key).dot(right) < -1.0 && from_camera(&fill).dot(right) > 1.0);
-            assert!(fill.intensity.max_element() < 0.5 * key.intensity.min_element());
-        }
-    }
-
-    #[test]
-    fn a_scene_is_completed_once() {
-        let mut bare = scene(Vec3::ZERO, Vec3::ONE);
-        let lit = bare.default_lights(&bare.default_camera(Up::Z));
-        assert_eq!(bare.complete(Up::Z), Added { camera: true, lights: true, ..Added::default() });
-        assert_eq!((bare.cameras.as_slice(), bare.lights.as_slice()), (&[bare.default_camera(Up::Z)][..], &lit[..]));
-        assert_eq!(bare.complete(Up::Y), Added::default());
-        // Existing content stays, and lights are placed relative to the first camera.
-        let camera = Camera::look_at(Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, Vec3::Y, 30.0).unwrap();
-        bare.cameras = vec![camera.clone(), bare.default_camera(Up::Y)];
-        bare.lights.clear();
-        assert_eq!(bare.complete(Up::Y), Added { lights: true, ..Added::default() });
-        assert_eq!((bare.cameras.len(), bare.lights.as_slice()), (2, &bare.default_lights(&camera)[..]));
-    }
-
-    #[test]
-    fn an_unknown_camera_is_answered_with_the_known() {
-        let mut scene = scene(Vec3::ZERO, Vec3::ONE);
-        let message = |scene: &Scene| scene.camera("top").unwrap_err().to_string();
-        assert!(message(&scene).contains("no named cameras"));
-        scene.cameras.push(Camera { name: "front".into(), ..scene.default_camera(Up::Y) });
-        assert_eq!(message(&scene), "there is no camera named `top`, scene test; available: front");
-        assert_eq!(scene.camera("front").unwrap().name, "front");
-    }
 }

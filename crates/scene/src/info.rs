@@ -316,6 +316,3 @@ fn triple(vector: &[f64; 3]) -> String {
 fn rounded(number: f64) -> f64 {
     (number * 1e6).round() / 1e6
 }
-
-#[cfg(test)]
-mod tests;

@@ -27,6 +27,8 @@ mod geometry_check;
 mod ground;
 mod info;
 mod instances;
+#[doc(hidden)]
+pub mod internals;
 mod lamps;
 mod light;
 mod lights;

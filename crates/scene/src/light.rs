@@ -365,6 +365,3 @@ fn size(kind: &'static str, radius: f32) -> Result<f32, LightError> {
     let remedy = "give a radius above 0; a light without a size is a point light";
     Err(LightError { kind, what: "radius", value: radius.to_string(), remedy })
 }
-
-#[cfg(test)]
-mod tests;

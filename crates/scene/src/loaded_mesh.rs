@@ -6,28 +6,28 @@ use crate::{MeshPart, Objects, Position};
 
 /// One mesh as assembled by a loader. It is passed by value: no part of a large file is held twice.
 #[derive(Debug)]
-pub(crate) struct LoadedMesh<P> {
+pub struct LoadedMesh<P> {
     /// Vertices in the file's coordinates, `Vec3` or `DVec3`.
-    pub(crate) positions: Vec<P>,
+    pub positions: Vec<P>,
     /// Normals by vertex, or none; need not be unit length.
-    pub(crate) normals: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
     /// Texture coordinates by vertex, or none.
-    pub(crate) uvs: Vec<Vec2>,
+    pub uvs: Vec<Vec2>,
     /// Linear colours by vertex, or none.
-    pub(crate) colors: Vec<Vec3>,
+    pub colors: Vec<Vec3>,
     /// Three vertex indices per triangle, all in range.
-    pub(crate) triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<[u32; 3]>,
     /// Material by triangle.
-    pub(crate) materials: Vec<u32>,
+    pub materials: Vec<u32>,
     /// Smoothing group by triangle, 0 for those that are flat; or none: all are in one.
-    pub(crate) groups: Vec<u32>,
+    pub groups: Vec<u32>,
     /// The object of each triangle; none if the file has no names.
-    pub(crate) objects: Objects,
+    pub objects: Objects,
 }
 
 impl<P: Position> LoadedMesh<P> {
     /// The mesh without its materials.
-    pub(crate) fn part(&self) -> MeshPart<'_, P> {
+    pub fn part(&self) -> MeshPart<'_, P> {
         let LoadedMesh { positions, normals, uvs, colors, triangles, .. } = self;
         MeshPart { positions, normals, uvs, colors, opacities: &[], triangles }
     }
@@ -59,7 +59,7 @@ impl<P: Position> LoadedMesh<P> {
     }
 
     /// Drops vertices that no triangle uses: one that is far away would move the local frame.
-    pub(crate) fn drop_unused_vertices(&mut self) {
+    pub fn drop_unused_vertices(&mut self) {
         let mut used = vec![false; self.positions.len()];
         self.triangles.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
         if used.iter().all(|&used| used) {
@@ -73,34 +73,5 @@ impl<P: Position> LoadedMesh<P> {
         }
         self.choose_vertices((0..used.len() as u32).filter(|&vertex| used[vertex as usize]));
         self.triangles.iter_mut().flatten().for_each(|vertex| *vertex = place[*vertex as usize]);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::DVec3;
-
-    use super::*;
-
-    #[test]
-    fn vertices_without_a_triangle_are_dropped() {
-        let mut mesh = LoadedMesh {
-            normals: Vec::new(),
-            uvs: Vec::new(),
-            materials: vec![0; 2],
-            groups: Vec::new(),
-            objects: Objects::default(),
-            positions: (0..6).map(|x| DVec3::splat(f64::from(x))).collect(),
-            colors: (0..6).map(|x| Vec3::splat(x as f32)).collect(),
-            triangles: vec![[5, 1, 3], [1, 3, 4]],
-        };
-        let corners =
-            |mesh: &LoadedMesh<DVec3>| mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect();
-        let before: Vec<DVec3> = corners(&mesh);
-        mesh.drop_unused_vertices();
-        assert_eq!(mesh.positions.len(), 4);
-        assert_eq!(corners(&mesh), before);
-        assert!(mesh.colors.iter().zip(&mesh.positions).all(|(color, position)| color.as_dvec3() == *position));
-        assert!(mesh.normals.is_empty());
     }
 }

@@ -18,14 +18,17 @@ pub(crate) const DEFAULT_SEGMENTS: u32 = 96;
 
 /// Triangles of one solid, counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Shape {
-    positions: Vec<DVec3>,
-    normals: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
+pub struct Shape {
+    /// The vertices.
+    pub positions: Vec<DVec3>,
+    /// Normals by vertex.
+    pub normals: Vec<Vec3>,
+    /// Three vertices per triangle.
+    pub triangles: Vec<[u32; 3]>,
     /// Texture coordinates of the corners of each triangle.
-    corners: Vec<[Vec2; 3]>,
+    pub corners: Vec<[Vec2; 3]>,
     /// Texture coordinates by vertex, if requested.
-    uvs: Vec<Vec2>,
+    pub uvs: Vec<Vec2>,
 }
 
 impl Shape {
@@ -41,7 +44,7 @@ impl Shape {
     }
 
     /// The shape with texture coordinates. Vertices with several positions in the image are duplicated.
-    pub(crate) fn textured(self) -> Shape {
+    pub fn textured(self) -> Shape {
         let mut shape = Shape { corners: self.corners, ..Shape::default() };
         let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::new();
         for (triangle, uvs) in self.triangles.iter().zip(&shape.corners) {
@@ -75,7 +78,7 @@ impl Shape {
     }
 
     /// A parallelogram around `center` with the edges `u` and `v`; its front is the side of u × v.
-    pub(crate) fn rectangle(center: DVec3, u: DVec3, v: DVec3) -> Shape {
+    pub fn rectangle(center: DVec3, u: DVec3, v: DVec3) -> Shape {
         let corner = |a: f64, b: f64| center + 0.5 * (a * u + b * v);
         let positions = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
         let mut shape = Shape { positions, ..Shape::default() };
@@ -84,7 +87,7 @@ impl Shape {
     }
 
     /// A box between two corners.
-    pub(crate) fn cuboid(min: DVec3, max: DVec3) -> Shape {
+    pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
         let pick = |bit: usize, low: f64, high: f64| if bit == 0 { low } else { high };
         let corner =
             |i: usize| DVec3::new(pick(i & 1, min.x, max.x), pick(i & 2, min.y, max.y), pick(i & 4, min.z, max.z));
@@ -102,7 +105,7 @@ impl Shape {
     }
 
     /// A sphere with `segments` triangles around and half as many rings from pole to pole, with poles at the top and bottom (Y).
-    pub(crate) fn sphere(center: DVec3, radius: f64, segments: u32) -> Shape {
+    pub fn sphere(center: DVec3, radius: f64, segments: u32) -> Shape {
         let rings = (segments / 2).max(2);
         let mut directions = vec![DVec3::Y];
         for ring in 1..rings {
@@ -135,7 +138,7 @@ impl Shape {
     }
 
     /// A cylinder from the centre of one end to the centre of the other, which must not coincide; with `caps` its ends are closed.
-    pub(crate) fn cylinder(base: DVec3, top: DVec3, radius: f64, segments: u32, caps: bool) -> Shape {
+    pub fn cylinder(base: DVec3, top: DVec3, radius: f64, segments: u32, caps: bool) -> Shape {
         let axis = (top - base).normalize();
         let turn = DQuat::from_rotation_arc(DVec3::Y, axis);
         let spokes: Vec<DVec3> = circle(segments).map(|(x, z)| turn * DVec3::new(x, 0.0, z)).collect();
@@ -202,7 +205,7 @@ fn uv_of_box(face: usize, (x, y, z): (usize, usize, usize)) -> Vec2 {
 
 /// Two directions that span the plane with this unit normal, right-handed with it: the first is horizontal; for a normal along
 /// Y it is +X.
-pub(crate) fn tangents(normal: DVec3) -> (DVec3, DVec3) {
+pub fn tangents(normal: DVec3) -> (DVec3, DVec3) {
     let u = DVec3::Y.cross(normal).try_normalize().filter(|_| normal.y.abs() < 1.0 - 1e-12).unwrap_or(DVec3::X);
     (u, normal.cross(u))
 }
@@ -214,6 +217,3 @@ fn circle(segments: u32) -> impl Iterator<Item = (f64, f64)> {
         (cos, sin)
     })
 }
-
-#[cfg(test)]
-mod tests;

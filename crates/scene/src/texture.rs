@@ -1,10 +1,10 @@
 //! Textures: images that colour surfaces, turn their normals, or say how rough they are.
 
-mod decode;
+pub(crate) mod decode;
 mod files;
-mod heights;
-mod missing_uvs;
-mod packed;
+pub(crate) mod heights;
+pub(crate) mod missing_uvs;
+pub(crate) mod packed;
 
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;

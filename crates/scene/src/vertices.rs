@@ -85,7 +85,7 @@ impl Position for DVec3 {
 
 /// Placed vertices without a local frame.
 #[derive(Debug, Default)]
-pub(crate) struct Vertices {
+pub struct Vertices {
     /// One entry per vertex: of a single-precision run in its part's coordinates, of a double-precision run not yet set. Empty if all
     /// runs are of double precision.
     single: Vec<Vec3>,
@@ -107,7 +107,7 @@ enum Run {
 
 impl Vertices {
     /// Adds vertices placed by `transform`.
-    pub(crate) fn add(&mut self, positions: Positions, transform: &DMat4) {
+    pub fn add(&mut self, positions: Positions, transform: &DMat4) {
         match positions {
             Positions::Single(positions) => {
                 self.include(positions, transform);
@@ -153,12 +153,12 @@ impl Vertices {
     }
 
     /// Number of vertices.
-    pub(crate) fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.count
     }
 
     /// Lowest and highest corner of the bounding box of all finite vertices; `None` if there are none.
-    pub(crate) fn bounds(&self) -> Option<(DVec3, DVec3)> {
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         self.bounds
     }
 
@@ -169,7 +169,7 @@ impl Vertices {
     }
 
     /// All vertices relative to `origin`.
-    pub(crate) fn finish(self, origin: DVec3) -> Vec<Vec3> {
+    pub fn finish(self, origin: DVec3) -> Vec<Vec3> {
         let Vertices { mut single, double, runs, count, .. } = self;
         if single.is_empty() {
             return double.into_iter().map(|world| (world - origin).as_vec3()).collect();
@@ -202,32 +202,5 @@ impl Vertices {
                 (min.min(world), max.max(world))
             });
         self.bounds = min.cmple(max).all().then_some((min, max));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn both_precisions_are_placed_in_their_order() {
-        let far = DVec3::new(1e7 + 0.5, 0.0, 0.0);
-        let mut vertices = Vertices::default();
-        vertices.add(Positions::Single(&[Vec3::X]), &DMat4::from_translation(far));
-        vertices.add(Positions::Double(&[far]), &DMat4::IDENTITY);
-        vertices.add(Positions::Double(&[DVec3::Y]), &DMat4::from_translation(far));
-        vertices.add(Positions::Single(&[Vec3::ZERO, Vec3::Z]), &DMat4::from_translation(far));
-        assert_eq!(vertices.len(), 5);
-        assert_eq!(vertices.bounds(), Some((far, far + DVec3::ONE)));
-        assert_eq!(vertices.finish(far), [Vec3::X, Vec3::ZERO, Vec3::Y, Vec3::ZERO, Vec3::Z]);
-    }
-
-    #[test]
-    fn what_is_not_finite_has_no_part_in_the_box() {
-        let mut vertices = Vertices::default();
-        vertices.add(Positions::Single(&[Vec3::NAN]), &DMat4::IDENTITY);
-        assert_eq!(vertices.bounds(), None);
-        vertices.add(Positions::Single(&[Vec3::X, Vec3::INFINITY]), &DMat4::IDENTITY);
-        assert_eq!(vertices.bounds(), Some((DVec3::X, DVec3::X)));
     }
 }

@@ -58,7 +58,7 @@ const BAND: usize = 64;
 const BLOCK: usize = 32;
 
 /// The error of each pixel, in [0, 1]; rows of `width` sRGB codes.
-pub(super) fn flip(reference: &[[u8; 3]], test: &[[u8; 3]], width: usize) -> Vec<f32> {
+pub fn flip(reference: &[[u8; 3]], test: &[[u8; 3]], width: usize) -> Vec<f32> {
     let filters = Filters::new(PIXELS_PER_DEGREE);
     let color = ColorDifference::new();
     let linear: [f32; 256] = std::array::from_fn(|code| Transfer::Srgb.decode(code as u8));
@@ -329,6 +329,3 @@ const fn inverse(m: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     }
     result
 }
-
-#[cfg(test)]
-mod tests;

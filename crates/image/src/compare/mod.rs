@@ -6,7 +6,7 @@
 //! viewer perceives when flipping between the images, at 67 pixels per degree: a 0.7 m wide 4K screen at 0.7 m. It gets display
 //! values rounded to 8 bits.
 
-mod flip;
+pub(crate) mod flip;
 mod magma;
 
 use serde::{Serialize, Serializer};

@@ -13,19 +13,21 @@ use crate::matte::{MOST_RANKS, Matte, Rank};
 
 /// What a layer is called in files.
 #[derive(Clone, Copy)]
-pub(super) struct Naming {
+pub struct Naming {
     /// The layer.
-    pub(super) layer: &'static str,
+    pub layer: &'static str,
     /// The channel of what the nearest sample sees.
-    pub(super) nearest: &'static str,
+    pub nearest: &'static str,
 }
 
-pub(super) const OBJECTS: Naming = Naming { layer: "CryptoObject", nearest: "id.object" };
-pub(super) const MATERIALS: Naming = Naming { layer: "CryptoMaterial", nearest: "id.material" };
+/// That of objects.
+pub const OBJECTS: Naming = Naming { layer: "CryptoObject", nearest: "id.object" };
+/// That of materials.
+pub const MATERIALS: Naming = Naming { layer: "CryptoMaterial", nearest: "id.material" };
 
 impl Naming {
     /// The channels of a rank: its identifier, and its share.
-    pub(super) fn channels(self, rank: usize) -> [String; 2] {
+    pub fn channels(self, rank: usize) -> [String; 2] {
         let channels = if rank.is_multiple_of(2) { ["R", "G"] } else { ["B", "A"] };
         channels.map(|channel| format!("{}{:02}.{channel}", self.layer, rank / 2))
     }
@@ -41,7 +43,8 @@ impl Naming {
         .map(|(name, text)| (self.attribute(name), text))
     }
 
-    fn attribute(self, name: &str) -> String {
+    /// The name of an attribute.
+    pub fn attribute(self, name: &str) -> String {
         let key = format!("{:08x}", murmur3(self.layer.as_bytes()));
         format!("cryptomatte/{}/{name}", &key[..7])
     }
@@ -103,13 +106,14 @@ pub(super) fn identifiers(names: &[String]) -> Vec<u32> {
 }
 
 /// The bits of the float that identifies a name.
-fn identifier(name: &str) -> u32 {
+pub fn identifier(name: &str) -> u32 {
     let hash = murmur3(name.as_bytes());
     let exponent = hash >> 23 & 0xff;
     if exponent == 0 || exponent == 0xff { hash ^ 1 << 23 } else { hash }
 }
 
-fn murmur3(bytes: &[u8]) -> u32 {
+/// MurmurHash3 with 32 bits and a seed of 0.
+pub fn murmur3(bytes: &[u8]) -> u32 {
     let mixed = |word: u32| word.wrapping_mul(0xcc9e_2d51).rotate_left(15).wrapping_mul(0x1b87_3593);
     let (words, rest) = bytes.as_chunks::<4>();
     let mut hash = 0_u32;
@@ -124,13 +128,13 @@ fn murmur3(bytes: &[u8]) -> u32 {
 }
 
 /// Names with their identifiers in hexadecimal digits, as a JSON object in the order of the numbers.
-fn manifest(names: &[String]) -> String {
+pub fn manifest(names: &[String]) -> String {
     let entry = |name: &String| format!("{}:\"{:08x}\"", serde_json::Value::from(name.as_str()), identifier(name));
     format!("{{{}}}", names.iter().map(entry).collect::<Vec<_>>().join(","))
 }
 
 /// The names of a manifest in their order.
-struct Manifest(Vec<String>);
+pub struct Manifest(pub Vec<String>);
 
 impl<'de> Deserialize<'de> for Manifest {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Manifest, D::Error> {
@@ -153,62 +157,5 @@ impl<'de> Deserialize<'de> for Manifest {
         }
 
         deserializer.deserialize_map(Names)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn hashes_have_their_known_values() {
-        // Of the reference implementation, seed 0.
-        for (text, hash) in [
-            ("", 0),
-            ("a", 0x3c25_69b2),
-            ("abc", 0xb3dd_93fa),
-            ("test", 0xba6b_d213),
-            ("Hello, world!", 0xc036_3e43),
-            ("The quick brown fox jumps over the lazy dog", 0x2e4f_f723),
-        ] {
-            assert_eq!(murmur3(text.as_bytes()), hash, "{text}");
-        }
-    }
-
-    #[test]
-    fn identifiers_have_their_known_values() {
-        // Of the tests of Psyop's implementation.
-        for (name, value) in [
-            ("hello", 6.070_563e-17_f32),
-            ("cube", -4.084_619e15),
-            ("sphere", 2.790_186e15),
-            ("plane", 3.665_576_2e-11),
-        ] {
-            let found = f32::from_bits(identifier(name));
-            assert!((found / value - 1.0).abs() < 1e-6, "{name}: {found:e}");
-        }
-        // The empty name would be zero, which is nothing.
-        assert_eq!(identifier(""), 1 << 23);
-        let names = (0..100_000).map(|number| format!("name {number}"));
-        assert!(names.map(|name| f32::from_bits(identifier(&name))).all(f32::is_normal));
-    }
-
-    #[test]
-    fn a_manifest_keeps_names_and_their_order() {
-        let names = ["b", "a", "zwölf \"Kühe\"\\\n", "", "日本"].map(str::to_owned).to_vec();
-        assert_eq!(serde_json::from_str::<Manifest>(&manifest(&names)).unwrap().0, names);
-        assert_eq!(manifest(&names[1..2]), "{\"a\":\"3c2569b2\"}");
-        for broken in ["", "[]", "{\"a\"}", "{\"a\":1}", "{\"a\":{}}"] {
-            assert!(serde_json::from_str::<Manifest>(broken).is_err(), "{broken}");
-        }
-    }
-
-    #[test]
-    fn attributes_are_those_of_the_specification() {
-        let naming = Naming { layer: "uCryptoAsset", nearest: "" };
-        assert!(naming.attribute("name").starts_with("cryptomatte/"));
-        assert_eq!(naming.attribute("hash").len(), "cryptomatte/0123456/hash".len());
-        assert_eq!(OBJECTS.channels(0), ["CryptoObject00.R", "CryptoObject00.G"]);
-        assert_eq!(MATERIALS.channels(5), ["CryptoMaterial02.B", "CryptoMaterial02.A"]);
     }
 }

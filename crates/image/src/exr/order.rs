@@ -10,8 +10,9 @@ use std::io::{self, Seek, SeekFrom, Write};
 const PREFIX: usize = 8;
 
 /// Writes to another output, as soon as it is told that all headers have been written; until then it keeps the bytes.
-pub(super) struct Sorted<'a, W> {
-    output: W,
+pub struct Sorted<'a, W> {
+    /// Where they go.
+    pub output: W,
     /// Whether all headers have been written.
     complete: &'a Cell<bool>,
     headers: usize,
@@ -20,7 +21,7 @@ pub(super) struct Sorted<'a, W> {
 
 impl<'a, W: Write> Sorted<'a, W> {
     /// For a file with `headers` headers.
-    pub(super) fn new(output: W, headers: usize, complete: &'a Cell<bool>) -> Sorted<'a, W> {
+    pub fn new(output: W, headers: usize, complete: &'a Cell<bool>) -> Sorted<'a, W> {
         Sorted { output, complete, headers, kept: Some(Vec::new()) }
     }
 
@@ -64,7 +65,7 @@ impl<W: Write + Seek> Seek for Sorted<'_, W> {
 }
 
 /// Sorts the attributes of the first `headers` headers; `None` if there are not as many.
-fn sort(bytes: &mut [u8], headers: usize) -> Option<()> {
+pub fn sort(bytes: &mut [u8], headers: usize) -> Option<()> {
     let mut start = PREFIX;
     for _ in 0..headers {
         let mut attributes = Vec::new();
@@ -92,41 +93,4 @@ fn end_of_attribute(bytes: &[u8], start: usize) -> Option<usize> {
     let value = length.checked_add(4)?;
     let bytes = u32::from_le_bytes(bytes.get(length..value)?.try_into().ok()?);
     value.checked_add(bytes as usize)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn attribute(name: &str, value: &[u8]) -> Vec<u8> {
-        let length = (value.len() as u32).to_le_bytes();
-        [name.as_bytes(), b"\0string\0", &length, value].concat()
-    }
-
-    #[test]
-    fn attributes_of_each_header_are_sorted() {
-        let [a, b, c] = [attribute("a", b"1\0\0"), attribute("b/2", b""), attribute("b", b"longer value")];
-        let file = |parts: [&[u8]; 5]| [b"\x76\x2f\x31\x01\x02\0\0\0".as_slice(), &parts.concat(), b"chunks"].concat();
-        let mut bytes = file([&b, &c, &[0], &[&*c, &*a].concat(), &[0]]);
-        sort(&mut bytes, 2).unwrap();
-        assert_eq!(bytes, file([&c, &b, &[0], &[&*a, &*c].concat(), &[0]]));
-        assert_eq!(sort(&mut bytes[..20], 1), None);
-    }
-
-    #[test]
-    fn nothing_is_written_before_the_headers_are_complete() {
-        let complete = Cell::new(false);
-        let mut written = io::Cursor::new(Vec::new());
-        let mut output = Sorted::new(&mut written, 1, &complete);
-        let [a, b] = [attribute("a", b"x"), attribute("b", b"y")];
-        for bytes in [b"\x76\x2f\x31\x01\x02\0\0\0".as_slice(), &b, &a, &[0], b"table"] {
-            output.write_all(bytes).unwrap();
-        }
-        output.flush().unwrap();
-        assert!(output.output.get_ref().is_empty());
-        complete.set(true);
-        output.write_all(b"chunk").unwrap();
-        let expected = [b"\x76\x2f\x31\x01\x02\0\0\0".as_slice(), &a, &b, &[0], b"table", b"chunk"].concat();
-        assert_eq!(*written.get_ref(), expected);
-    }
 }

@@ -23,7 +23,7 @@ const MAX_EXPANSION: u64 = 1376;
 
 /// Reads colours from the channels `R G B`, or from `Y` as grey, alpha if there is `A`, and the layers if all of their channels are present. The image
 /// is the file's data window.
-pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
+pub fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let chunks = ::exr::block::read(Cursor::new(bytes), false).map_err(malformed)?;
     check_headers(chunks.headers(), bytes.len() as u64)?;
     let flat = chunks.headers().iter().all(|header| !header.deep);

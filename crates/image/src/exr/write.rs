@@ -65,12 +65,12 @@ impl<'a> Part<'a> {
 }
 
 /// Writes the colours of `frame`, and its alpha if it has it; OpenEXR's colours are premultiplied, as the frame's.
-pub(crate) fn write(frame: &Frame, options: &SaveOptions, output: impl Write + Seek) -> Result<(), EncodeError> {
+pub fn write(frame: &Frame, options: &SaveOptions, output: impl Write + Seek) -> Result<(), EncodeError> {
     write_parts(frame, vec![color(frame, options)], options, output)
 }
 
 /// Writes the colours of `frame` and all of its `layers`, in one part or in one for each kind of layer.
-pub(crate) fn write_layers(
+pub fn write_layers(
     frame: &Frame,
     layers: &Layers,
     options: &SaveOptions,
@@ -122,7 +122,7 @@ pub(crate) fn write_layers(
 }
 
 /// Writes `channels` of floats by name, with as many values as `frame` has pixels.
-pub(crate) fn write_values(
+pub fn write_values(
     frame: &Frame,
     channels: &[(&str, &[f32])],
     options: &SaveOptions,

@@ -19,33 +19,38 @@ use crate::{
 
 /// Vertices of a part before they are placed.
 #[derive(Debug)]
-pub(crate) struct Shape {
+pub struct Shape {
     /// In the part's own coordinates.
-    pub(crate) positions: OwnedPositions,
+    pub positions: OwnedPositions,
     /// One for each vertex, or none.
-    pub(crate) normals: Vec<Vec3>,
-    pub(crate) morph: Option<Morph>,
+    pub normals: Vec<Vec3>,
+    /// What is blended into it.
+    pub morph: Option<Morph>,
 }
 
 /// Shapes that are blended into a part.
 #[derive(Debug)]
-pub(crate) struct Morph {
-    pub(crate) targets: Vec<Target>,
+pub struct Morph {
+    /// What there is to blend.
+    pub targets: Vec<Target>,
     /// One for each target.
-    pub(crate) rest: Vec<f64>,
-    pub(crate) weights: Option<Arc<Track>>,
+    pub rest: Vec<f64>,
+    /// The weights that change with time.
+    pub weights: Option<Arc<Track>>,
 }
 
 /// What a shape adds, for each vertex, or nothing.
 #[derive(Debug)]
-pub(crate) struct Target {
-    pub(crate) positions: Vec<Vec3>,
-    pub(crate) normals: Vec<Vec3>,
+pub struct Target {
+    /// To positions.
+    pub positions: Vec<Vec3>,
+    /// To normals.
+    pub normals: Vec<Vec3>,
 }
 
 /// What holds a part.
 #[derive(Clone, Debug)]
-pub(crate) enum Hold {
+pub enum Hold {
     /// It goes with a node of the rig, in whose coordinates the transform places it.
     Node(u32, DMat4),
     /// It is bent by a skeleton.
@@ -54,21 +59,22 @@ pub(crate) enum Hold {
 
 /// A skeleton.
 #[derive(Debug)]
-pub(crate) struct Skin {
+pub struct Skin {
     /// Nodes of the rig; at least one.
-    pub(crate) joints: Vec<u32>,
+    pub joints: Vec<u32>,
     /// From the mesh's coordinates to each joint's.
-    pub(crate) inverse_bind: Vec<DMat4>,
+    pub inverse_bind: Vec<DMat4>,
 }
 
 /// The joints of each vertex, as many for each.
 #[derive(Debug)]
-pub(crate) struct Influences {
-    pub(crate) per_vertex: usize,
+pub struct Influences {
+    /// How many a vertex has.
+    pub per_vertex: usize,
     /// Indices into the joints of the skin.
-    pub(crate) joints: Vec<u16>,
+    pub joints: Vec<u16>,
     /// Not negative.
-    pub(crate) weights: Vec<f32>,
+    pub weights: Vec<f32>,
 }
 
 /// A part of a scene's mesh that moves.
@@ -104,7 +110,7 @@ enum Placing<'a> {
 
 impl Shape {
     /// World positions and normals at `time`, or at rest; nodes are at `places`.
-    pub(crate) fn posed(&self, hold: &Hold, places: &[DMat4], time: Option<f64>) -> (Vec<DVec3>, Vec<Vec3>) {
+    pub fn posed(&self, hold: &Hold, places: &[DMat4], time: Option<f64>) -> (Vec<DVec3>, Vec<Vec3>) {
         let weights = self.morph.as_ref().map(|morph| morph.weights(time)).unwrap_or_default();
         let placing = hold.placing(places);
         let (positions, mut normals): (Vec<DVec3>, Vec<Vec3>) = (0..self.positions.len())
@@ -192,7 +198,7 @@ impl Influences {
 }
 
 /// A multiple of the inverse transpose: the transform of normals, which exists even where a surface is flattened.
-fn cofactors(matrix: &DMat3) -> DMat3 {
+pub fn cofactors(matrix: &DMat3) -> DMat3 {
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *matrix;
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
     if matrix.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }
@@ -239,52 +245,5 @@ impl MovingPart {
             let own = triangles.get_mut(self.triangles.clone()).unwrap_or_default();
             own.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
-    use super::*;
-    use crate::animation::track::{Interpolation, Kind};
-
-    fn shape(morph: Option<Morph>) -> Shape {
-        Shape { positions: OwnedPositions::Single(vec![Vec3::X, Vec3::Y]), normals: vec![Vec3::X, Vec3::Z], morph }
-    }
-
-    #[test]
-    fn morph_targets_are_added_by_their_weights() {
-        let target = |by: Vec3| Target { positions: vec![by; 2], normals: Vec::new() };
-        let keys = Track::new(Kind::Numbers(2), vec![0.0, 1.0], vec![0.0, 1.0, 2.0, 0.0], Interpolation::Linear);
-        let morph = Morph {
-            targets: vec![target(Vec3::X), target(Vec3::Z)],
-            rest: vec![0.5, 0.0],
-            weights: Some(Arc::new(keys.unwrap())),
-        };
-        let (shape, hold) = (shape(Some(morph)), Hold::Node(0, DMat4::IDENTITY));
-        let first = |time| shape.posed(&hold, &[DMat4::IDENTITY], time).0[0];
-        assert_eq!(first(None), DVec3::new(1.5, 0.0, 0.0));
-        assert_eq!([first(Some(0.0)), first(Some(0.5))], [DVec3::new(1.0, 0.0, 1.0), DVec3::new(2.0, 0.0, 0.5)]);
-    }
-
-    #[test]
-    fn a_skin_bends_by_its_joints() {
-        let skin = Skin { joints: vec![0, 1], inverse_bind: vec![DMat4::IDENTITY; 2] };
-        let influences = Influences { per_vertex: 2, joints: vec![0, 1, 1, 0], weights: vec![1.0, 1.0, 3.0, 0.0] };
-        let hold = Hold::Skin(Arc::new(skin), Arc::new(influences));
-        let places = [DMat4::IDENTITY, DMat4::from_rotation_z(FRAC_PI_2)];
-        let (positions, normals) = shape(None).posed(&hold, &places, None);
-        // Half of each; a quarter turn alone, by weights that are normalised.
-        assert!((positions[0] - DVec3::new(0.5, 0.5, 0.0)).length() < 1e-12, "{positions:?}");
-        assert!((positions[1] + DVec3::X).length() < 1e-12 && (normals[1] - Vec3::Z).length() < 1e-6);
-    }
-
-    #[test]
-    fn normals_stay_at_right_angles_to_their_surface() {
-        let squeezed = DMat4::from_scale(DVec3::new(1.0, 0.25, -1.0));
-        let by_cofactors = cofactors(&DMat3::from_mat4(squeezed)) * DVec3::new(1.0, 1.0, 1.0);
-        let by_inverse = normal_placement(&squeezed)(Vec3::ONE.normalize());
-        assert!((by_cofactors.normalize().as_vec3() - by_inverse).length() < 1e-6, "{by_inverse}");
     }
 }

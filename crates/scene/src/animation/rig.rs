@@ -8,28 +8,28 @@ use super::track::Track;
 
 /// Nodes, each after its parent.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Rig {
+pub struct Rig {
     nodes: Vec<Node>,
 }
 
 /// A node: its place in its parent, and how that moves.
 #[derive(Clone, Debug)]
-pub(crate) struct Node {
+pub struct Node {
     /// The number of the node that moves this one.
-    pub(crate) parent: Option<u32>,
+    pub parent: Option<u32>,
     /// The place without any motion.
-    pub(crate) rest: Place,
+    pub rest: Place,
     /// Motion by keys of the three parts of a [`Place::Parts`].
-    pub(crate) translation: Option<Arc<Track>>,
+    pub translation: Option<Arc<Track>>,
     /// Unit quaternions, or degrees about the fixed axes X, then Y, then Z, so that keys may be several turns apart.
-    pub(crate) rotation: Option<Arc<Track>>,
+    pub rotation: Option<Arc<Track>>,
     /// Factors by axis.
-    pub(crate) scale: Option<Arc<Track>>,
+    pub scale: Option<Arc<Track>>,
 }
 
 /// A place in a parent.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Place {
+pub enum Place {
     /// Any affine transform.
     Matrix(DMat4),
     /// Scale, then rotation, then translation.
@@ -45,7 +45,7 @@ pub(crate) enum Place {
 
 impl Place {
     /// At a point in its parent.
-    pub(crate) fn at(translation: DVec3) -> Place {
+    pub fn at(translation: DVec3) -> Place {
         Place::Parts { translation, rotation: DQuat::IDENTITY, scale: DVec3::ONE }
     }
 
@@ -61,7 +61,7 @@ impl Place {
 
 impl Node {
     /// A node that does not move by itself.
-    pub(crate) fn fixed(parent: Option<u32>, rest: Place) -> Node {
+    pub fn fixed(parent: Option<u32>, rest: Place) -> Node {
         Node { parent, rest, translation: None, rotation: None, scale: None }
     }
 
@@ -100,19 +100,19 @@ impl Node {
 
 impl Rig {
     /// Adds a node, whose parent was added before, and returns its number.
-    pub(crate) fn add(&mut self, node: Node) -> u32 {
+    pub fn add(&mut self, node: Node) -> u32 {
         debug_assert!(node.parent.is_none_or(|parent| (parent as usize) < self.nodes.len()), "parents come first");
         self.nodes.push(node);
         self.nodes.len() as u32 - 1
     }
 
     /// Whether each node moves, by itself or with its parent.
-    pub(crate) fn moving(&self) -> Vec<bool> {
+    pub fn moving(&self) -> Vec<bool> {
         self.with_parents(Node::moves)
     }
 
     /// Whether each node is enlarged or lessened over time, by itself or with its parent.
-    pub(crate) fn scaling(&self) -> Vec<bool> {
+    pub fn scaling(&self) -> Vec<bool> {
         self.with_parents(Node::scales)
     }
 
@@ -132,33 +132,12 @@ impl Rig {
     }
 
     /// From the coordinates of each node to the world's, at `time` or at rest.
-    pub(crate) fn places(&self, time: Option<f64>) -> Vec<DMat4> {
+    pub fn places(&self, time: Option<f64>) -> Vec<DMat4> {
         let mut places: Vec<DMat4> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             let local = time.map_or_else(|| node.rest.matrix(), |time| node.local(time));
             places.push(node.parent.map_or(local, |parent| places[parent as usize] * local));
         }
         places
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::animation::track::{Interpolation, Kind};
-
-    #[test]
-    fn children_go_with_their_parents() {
-        let mut rig = Rig::default();
-        let east = Track::new(Kind::Numbers(3), vec![0.0, 2.0], vec![1., 0., 0., 3., 0., 0.], Interpolation::Linear);
-        let parent = Node { translation: Some(Arc::new(east.unwrap())), ..Node::fixed(None, Place::at(DVec3::ZERO)) };
-        let parent = rig.add(parent);
-        let child = rig.add(Node::fixed(Some(parent), Place::Matrix(DMat4::from_translation(DVec3::Y))));
-        let other = rig.add(Node::fixed(None, Place::at(DVec3::ZERO)));
-        assert_eq!(rig.moving(), [true, true, false]);
-        assert_eq!(rig.scaling(), [false; 3]);
-        let at = |time| rig.places(time)[child as usize].transform_point3(DVec3::ZERO);
-        assert_eq!([at(None), at(Some(0.0)), at(Some(1.0))].map(|place| place.x), [0.0, 1.0, 2.0]);
-        assert_eq!((at(Some(1.0)).y, rig.places(Some(1.0))[other as usize]), (1.0, DMat4::IDENTITY));
     }
 }

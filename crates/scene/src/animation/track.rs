@@ -4,7 +4,7 @@ use glam::DQuat;
 
 /// How values go from one key to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Interpolation {
+pub enum Interpolation {
     /// They stay until the next key.
     Step,
     /// Along a line, rotations along the shortest arc.
@@ -16,7 +16,7 @@ pub(crate) enum Interpolation {
 
 /// What a track is the values of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// This many numbers at each key.
     Numbers(usize),
     /// Unit quaternions: x, y, z, w.
@@ -35,7 +35,7 @@ impl Kind {
 
 /// Values over time. Before the first key and after the last one they stay.
 #[derive(Clone, Debug)]
-pub(crate) struct Track {
+pub struct Track {
     kind: Kind,
     /// Seconds, ascending; at least one.
     times: Vec<f64>,
@@ -57,7 +57,7 @@ enum Between {
 
 impl Track {
     /// A track of keys at `times` in seconds, with the values of each after those of the one before. What is wrong with it, if something is.
-    pub(crate) fn new(
+    pub fn new(
         kind: Kind,
         times: Vec<f64>,
         mut values: Vec<f64>,
@@ -79,7 +79,7 @@ impl Track {
     }
 
     /// A track with the slopes of its file: each key has the slope before it, its values, and the slope after it.
-    pub(crate) fn with_slopes(kind: Kind, times: Vec<f64>, triples: &[f64]) -> Result<Track, &'static str> {
+    pub fn with_slopes(kind: Kind, times: Vec<f64>, triples: &[f64]) -> Result<Track, &'static str> {
         let width = kind.width();
         let part = |part: usize| -> Vec<f64> {
             triples.chunks_exact(3 * width).flat_map(|key| &key[part * width..(part + 1) * width]).copied().collect()
@@ -95,12 +95,12 @@ impl Track {
     }
 
     /// The time of the last key, seconds.
-    pub(crate) fn end(&self) -> f64 {
+    pub fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
 
     /// Whether all keys have the same values, so that nothing moves.
-    pub(crate) fn is_constant(&self) -> bool {
+    pub fn is_constant(&self) -> bool {
         let width = self.kind.width();
         let first = &self.values[..width];
         let straight = match &self.between {
@@ -111,7 +111,7 @@ impl Track {
     }
 
     /// The values at `time`, seconds.
-    pub(crate) fn sample(&self, time: f64, values: &mut [f64]) {
+    pub fn sample(&self, time: f64, values: &mut [f64]) {
         let width = self.kind.width();
         let at = |key: usize| &self.values[key * width..(key + 1) * width];
         let next = self.times.partition_point(|&key| key <= time);
@@ -199,72 +199,4 @@ fn slopes(width: usize, times: &[f64], values: &[f64]) -> Vec<f64> {
         if seconds > 0.0 { (values[to * width + index] - values[from * width + index]) / seconds } else { 0.0 }
     };
     (0..=last).flat_map(|key| (0..width).map(move |index| (key, index))).map(|(key, index)| slope(key, index)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
-    use super::*;
-
-    fn track(times: &[f64], values: &[f64], interpolation: Interpolation) -> Track {
-        Track::new(Kind::Numbers(values.len() / times.len()), times.to_vec(), values.to_vec(), interpolation).unwrap()
-    }
-
-    fn at(track: &Track, time: f64) -> f64 {
-        let mut value = [0.0];
-        track.sample(time, &mut value);
-        value[0]
-    }
-
-    #[test]
-    fn values_pass_through_their_keys() {
-        for interpolation in [Interpolation::Step, Interpolation::Linear, Interpolation::Smooth] {
-            let track = track(&[1.0, 2.0, 4.0], &[3.0, -1.0, 7.0], interpolation);
-            let found = [0.0, 1.0, 2.0, 4.0, 9.0].map(|time| at(&track, time));
-            assert_eq!(found, [3.0, 3.0, -1.0, 7.0, 7.0], "{interpolation:?}");
-            assert_eq!(track.end(), 4.0);
-        }
-    }
-
-    #[test]
-    fn each_interpolation_has_its_way_between() {
-        let keys = |interpolation| track(&[0.0, 1.0, 3.0, 4.0], &[0.0, 2.0, 6.0, 8.0], interpolation);
-        assert_eq!(at(&keys(Interpolation::Step), 2.9), 2.0);
-        assert_eq!(at(&keys(Interpolation::Linear), 2.5), 5.0);
-        // A line stays one, whatever the distances of its keys.
-        let smooth = keys(Interpolation::Smooth);
-        assert!((0..40).all(|i| (at(&smooth, 0.1 * f64::from(i)) - 0.2 * f64::from(i)).abs() < 1e-12));
-    }
-
-    #[test]
-    fn rotations_take_the_short_way() {
-        let turn = |angle: f64| DQuat::from_rotation_z(angle);
-        let keys = [turn(0.0), -turn(FRAC_PI_2), turn(2.0 * FRAC_PI_2)];
-        let values: Vec<f64> = keys.iter().flat_map(|key| key.to_array()).collect();
-        for (interpolation, close) in [(Interpolation::Linear, 1e-9), (Interpolation::Smooth, 0.05)] {
-            let track = Track::new(Kind::Rotations, vec![0.0, 1.0, 2.0], values.clone(), interpolation).unwrap();
-            let mut found = [0.0; 4];
-            track.sample(0.5, &mut found);
-            let difference = DQuat::from_array(found).angle_between(turn(0.5 * FRAC_PI_2));
-            assert!(difference < close, "{interpolation:?} {difference}");
-        }
-    }
-
-    #[test]
-    fn slopes_of_a_file_are_followed() {
-        // From 0 to 0, leaving and arriving with the slope 1: s³ - 2s² + s + s³ - s².
-        let track = Track::with_slopes(Kind::Numbers(1), vec![0.0, 1.0], &[9.0, 0.0, 1.0, 1.0, 0.0, 9.0]).unwrap();
-        assert!((at(&track, 0.25) - 0.09375).abs() < 1e-12 && !track.is_constant());
-    }
-
-    #[test]
-    fn damaged_tracks_are_refused() {
-        let new = |times: &[f64], values: &[f64]| {
-            Track::new(Kind::Numbers(1), times.to_vec(), values.to_vec(), Interpolation::Smooth).is_ok()
-        };
-        assert!(new(&[0.0, 1.0, 1.0], &[1.0; 3]));
-        assert!(!new(&[], &[]) && !new(&[0.0], &[1.0; 2]) && !new(&[1.0, 0.0], &[1.0; 2]));
-        assert!(!new(&[f64::NAN], &[1.0]) && new(&[-1.0], &[1.0]));
-    }
 }

@@ -18,13 +18,11 @@ mod foliage;
 mod garden;
 mod gazebo;
 mod lights;
-mod math;
+pub(crate) mod math;
 mod options;
 mod parts;
 mod plants;
 mod surfaces;
-#[cfg(test)]
-mod tests;
 
 use glam::{Vec2, Vec3};
 

@@ -10,8 +10,6 @@
 
 mod glb;
 mod pictures;
-#[cfg(test)]
-mod tests;
 mod text;
 
 use std::{

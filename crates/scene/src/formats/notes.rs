@@ -4,7 +4,7 @@ use std::path::Path;
 
 /// The kinds found so far.
 #[derive(Debug, Default)]
-pub(super) struct Notes(Vec<Note>);
+pub struct Notes(Vec<Note>);
 
 #[derive(Debug)]
 struct Note {
@@ -18,7 +18,7 @@ struct Note {
 
 impl Notes {
     /// Counts one; `first` is called for the first of its kind and returns its line and a quotation.
-    pub(super) fn add(&mut self, kind: &'static str, first: impl FnOnce() -> (usize, String)) {
+    pub fn add(&mut self, kind: &'static str, first: impl FnOnce() -> (usize, String)) {
         if let Some(known) = self.0.iter_mut().find(|note| note.kind == kind) {
             known.count += 1;
         } else {
@@ -28,26 +28,10 @@ impl Notes {
     }
 
     /// A sentence for each kind.
-    pub(super) fn warnings(self, path: &Path) -> impl Iterator<Item = String> {
+    pub fn warnings(self, path: &Path) -> impl Iterator<Item = String> {
         self.0.into_iter().map(move |Note { kind, count, line, subject }| {
             let all = if count > 1 { format!(" (the first of {count})") } else { String::new() };
             format!("{}:{line}: `{subject}` {kind}{all}", path.display())
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_million_of_a_kind_are_one_sentence() {
-        let mut notes = Notes::default();
-        for line in 1..=1_000_000 {
-            notes.add("is odd", || (line, "x".to_owned()));
-        }
-        notes.add("is odder", || (7, "y".to_owned()));
-        let warnings: Vec<String> = notes.warnings(Path::new("a.obj")).collect();
-        assert_eq!(warnings, ["a.obj:1: `x` is odd (the first of 1000000)", "a.obj:7: `y` is odder"]);
     }
 }

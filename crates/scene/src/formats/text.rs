@@ -11,7 +11,7 @@ const QUOTED: usize = 256;
 
 /// The text without a byte order mark, with line feeds as line endings: files with lone carriage returns, from old systems, are
 /// converted.
-pub(super) fn with_line_feeds(bytes: &mut [u8]) -> &[u8] {
+pub fn with_line_feeds(bytes: &mut [u8]) -> &[u8] {
     if memchr(b'\n', bytes).is_none() {
         bytes.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
     }
@@ -19,7 +19,7 @@ pub(super) fn with_line_feeds(bytes: &mut [u8]) -> &[u8] {
 }
 
 /// The bytes decoded as UTF-8, or else as Latin-1, so that different names stay different.
-pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+pub fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     match str::from_utf8(bytes) {
         Ok(text) => text.into(),
         Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect::<String>().into(),
@@ -27,7 +27,7 @@ pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
 }
 
 /// A quotation from a file for a message.
-pub(super) fn quoted(bytes: &[u8]) -> String {
+pub fn quoted(bytes: &[u8]) -> String {
     quote(&decoded(&bytes[..bytes.len().min(QUOTED)]))
 }
 
@@ -44,12 +44,12 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 /// A number in decimal notation, or one of the words for infinity and NaN that `f64` accepts.
-pub(super) fn number(word: &[u8]) -> Option<f64> {
+pub fn number(word: &[u8]) -> Option<f64> {
     str::from_utf8(word).ok()?.parse().ok()
 }
 
 /// A number as some programs write it: followed by the suffix of a C constant, or one of the words of C libraries for infinity and NaN.
-pub(super) fn odd_number(word: &[u8]) -> Option<f64> {
+pub fn odd_number(word: &[u8]) -> Option<f64> {
     if let [digits @ .., b'f' | b'F'] = word
         && digits.last().is_some_and(|&last| last.is_ascii_digit() || last == b'.')
     {
@@ -68,49 +68,4 @@ pub(super) fn odd_number(word: &[u8]) -> Option<f64> {
 /// The number of the line that contains byte `at`, counted from 1.
 pub(super) fn line_of(text: &[u8], at: usize) -> usize {
     1 + text[..at.min(text.len())].iter().filter(|&&byte| byte == b'\n').count()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn line_endings_of_all_systems_are_one() {
-        for text in ["a\nb", "\u{feff}a\r\nb", "a\rb"] {
-            let mut bytes = text.as_bytes().to_vec();
-            let words: Vec<&[u8]> =
-                with_line_feeds(&mut bytes).split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).collect();
-            assert_eq!(words, [b"a", b"b"], "{text:?}");
-        }
-    }
-
-    #[test]
-    fn names_in_latin_1_stay_different() {
-        assert_eq!(decoded(b"gr\xfcn"), "grün");
-        assert_ne!(decoded(b"\xe4"), decoded(b"\xf6"));
-        assert_eq!(decoded("grün".as_bytes()), "grün");
-    }
-
-    #[test]
-    fn messages_quote_a_beginning() {
-        assert_eq!(quoted(b" v 1\t2\r"), r"v 1\t2");
-        assert_eq!(quoted(&[b'x'; 1000]).chars().count(), 25);
-        assert_eq!(quoted("ü".repeat(1000).as_bytes()), "ü".repeat(24) + "…");
-        assert_eq!(quoted(b"root:x:0:0:root:/root:/bin/bash"), "root:x:0:0:root:/root:/b…");
-    }
-
-    #[test]
-    fn numbers_are_decimal() {
-        assert_eq!([&b"1.5"[..], b"-.5e1", b"+3.", b"7"].map(number), [Some(1.5), Some(-5.0), Some(3.0), Some(7.0)]);
-        assert_eq!([&b""[..], b"0x10", b"1,5", b"1\xff"].map(number), [None; 4]);
-    }
-
-    #[test]
-    fn numbers_of_c_programs_are_known() {
-        assert_eq!([&b"1.0f"[..], b"-2.F", b"1e3f"].map(odd_number), [Some(1.0), Some(-2.0), Some(1000.0)]);
-        let undefined = [&b"-nan(ind)"[..], b"1.#QNAN0", b"-1.#IND", b"nan(0x1)"].map(odd_number);
-        assert!(undefined.iter().all(|number| number.is_some_and(f64::is_nan)), "{undefined:?}");
-        assert_eq!(odd_number(b"1.#INF00"), Some(f64::INFINITY));
-        assert_eq!([&b"f"[..], b"1,5", b"x", b"", b"0x1f", b"1.0ff", b"1f0"].map(odd_number), [None; 7]);
-    }
 }

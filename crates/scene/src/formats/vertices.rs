@@ -3,21 +3,21 @@
 use std::collections::HashMap;
 
 /// No index: a corner without this attribute.
-pub(super) const NONE: u32 = u32::MAX;
+pub const NONE: u32 = u32::MAX;
 
 /// Number of combinations of one position that are searched linearly before a hash table takes over: a file with thousands must not
 /// take thousands of steps for each.
 const LONGEST_CHAIN: usize = 12;
 
 /// Indices of a corner: position, and two attributes or [`NONE`].
-pub(super) type Corner = [u32; 3];
+pub type Corner = [u32; 3];
 
 /// The vertices so far.
 ///
 /// Combinations of one position form a chain, the newest first. Faces use combinations that were used shortly before, and positions
 /// near each other, so that the starts of the chains are in the cache; a hash table over all would be several times slower.
 #[derive(Debug, Default)]
-pub(super) struct Vertices {
+pub struct Vertices {
     corners: Vec<Corner>,
     /// By position: the newest vertex of its chain.
     newest: Vec<u32>,
@@ -29,7 +29,7 @@ pub(super) struct Vertices {
 
 impl Vertices {
     /// The vertex of this corner.
-    pub(super) fn of(&mut self, corner: Corner) -> u32 {
+    pub fn of(&mut self, corner: Corner) -> u32 {
         let position = corner[0] as usize;
         if position >= self.newest.len() {
             self.newest.resize(position + 1, NONE);
@@ -61,22 +61,7 @@ impl Vertices {
     }
 
     /// The combination of each vertex.
-    pub(super) fn into_corners(self) -> Vec<Corner> {
+    pub fn into_corners(self) -> Vec<Corner> {
         self.corners
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn equal_corners_share_a_vertex_however_many_there_are() {
-        let corners: Vec<Corner> = (0..100).map(|index| [index % 2, index / 2, NONE]).collect();
-        let mut vertices = Vertices::default();
-        for _ in 0..2 {
-            assert!((0..100).all(|index| vertices.of(corners[index]) == index as u32));
-        }
-        assert_eq!(vertices.into_corners(), corners);
     }
 }

@@ -20,14 +20,15 @@ const LATER: f32 = 1.0 + 1e-6;
 
 /// The first triangle that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Seen {
+pub struct Seen {
     /// In units of the direction.
-    pub(super) distance: f32,
-    pub(super) triangle: u32,
+    pub distance: f32,
+    /// Its number.
+    pub triangle: u32,
 }
 
 /// A mesh that can be asked what a ray meets.
-pub(super) struct Sight<'a> {
+pub struct Sight<'a> {
     mesh: &'a Mesh,
     /// All triangles, those of a leaf next to each other.
     order: Vec<u32>,
@@ -38,7 +39,8 @@ pub(super) struct Sight<'a> {
 }
 
 impl<'a> Sight<'a> {
-    pub(super) fn new(mesh: &'a Mesh) -> Sight<'a> {
+    /// Sorts the triangles of a mesh.
+    pub fn new(mesh: &'a Mesh) -> Sight<'a> {
         let count = mesh.triangles.len();
         let leaves = count.div_ceil(LEAF).max(1).next_power_of_two();
         let centers: Vec<Vec3> =
@@ -66,7 +68,7 @@ impl<'a> Sight<'a> {
     }
 
     /// The first triangle on the way from `origin` along `direction`; the smallest index of several.
-    pub(super) fn first(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
+    pub fn first(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
         let usable = |d: f32| if d.abs() < LEAST_COMPONENT { LEAST_COMPONENT } else { d };
         let inverse = direction.map(usable).recip();
         let mut nearest = Seen { distance: f32::INFINITY, triangle: u32::MAX };
@@ -104,17 +106,17 @@ impl<'a> Sight<'a> {
     }
 
     /// Whether nothing is between two points.
-    pub(super) fn is_free(&self, from: Vec3, to: Vec3) -> bool {
+    pub fn is_free(&self, from: Vec3, to: Vec3) -> bool {
         self.first(from, to - from).is_none_or(|seen| seen.distance >= 1.0)
     }
 
     /// How far it is from `origin` to the first triangle along a unit direction, at most `most`.
-    pub(super) fn free(&self, origin: Vec3, direction: Vec3, most: f32) -> f32 {
+    pub fn free(&self, origin: Vec3, direction: Vec3, most: f32) -> f32 {
         self.first(origin, direction).map_or(most, |seen| seen.distance.min(most))
     }
 
     /// The unit normal to the front of a triangle; zero if it has none. Vertex normals know better than the order of the corners.
-    pub(super) fn normal(&self, triangle: u32) -> Vec3 {
+    pub fn normal(&self, triangle: u32) -> Vec3 {
         let [a, b, c] = self.mesh.corners(triangle as usize);
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let given = |vertex: u32| self.mesh.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
@@ -163,67 +165,11 @@ fn split(order: &mut [u32], centers: &[Vec3], range: std::ops::Range<usize>, lea
 
 /// The distance to a triangle in units of the direction; infinite if the ray misses it (Möller and Trumbore, *Fast, Minimum Storage
 /// Ray/Triangle Intersection*, 1997).
-fn distance([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> f32 {
+pub fn distance([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> f32 {
     let (ab, ac, ao) = (b - a, c - a, origin - a);
     let across = direction.cross(ac);
     let scale = ab.dot(across).recip();
     let (u, beside) = (ao.dot(across) * scale, ao.cross(ab));
     let (v, t) = (direction.dot(beside) * scale, ac.dot(beside) * scale);
     if u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 { t } else { f32::INFINITY }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Triangles of different sizes and directions in no order.
-    fn soup(count: usize) -> Mesh {
-        let mut state = 1u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32 - 0.5
-        };
-        let mut point = |size: f32| size * Vec3::new(random(), random(), random());
-        let mut mesh = Mesh::default();
-        for index in 0..count as u32 {
-            let center = point(10.0);
-            mesh.positions.extend((0..3).map(|_| center + point(2.0)));
-            mesh.triangles.push([3 * index, 3 * index + 1, 3 * index + 2]);
-        }
-        mesh
-    }
-
-    #[test]
-    fn the_tree_finds_what_all_triangles_say() {
-        let mut hits = 0;
-        for count in [0, 1, 5, 333] {
-            let mesh = soup(count);
-            let sight = Sight::new(&mesh);
-            for step in 0..400 {
-                let turn = 0.37 * step as f32;
-                let origin = Vec3::new(4.0 * turn.sin(), 3.0 * (2.0 * turn).cos(), 0.01 * step as f32);
-                let direction = [Vec3::X, Vec3::NEG_Y, Vec3::new(turn.cos(), 0.3, turn.sin())][step % 3];
-                let all = (0..count).map(|index| distance(mesh.corners(index), origin, direction));
-                let nearest = all.fold(f32::INFINITY, f32::min);
-                let found = sight.first(origin, direction).map_or(f32::INFINITY, |seen| seen.distance);
-                assert_eq!(found, nearest, "{count} triangles, ray {step}");
-                hits += usize::from(found.is_finite());
-            }
-        }
-        assert!((100..1500).contains(&hits), "{hits}");
-    }
-
-    #[test]
-    fn a_wall_has_a_front_which_vertex_normals_may_turn() {
-        let mut mesh =
-            Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]], ..Mesh::default() };
-        let from = Vec3::new(0.2, 0.2, 3.0);
-        let sight = Sight::new(&mesh);
-        assert_eq!(sight.first(from, Vec3::NEG_Z), Some(Seen { distance: 3.0, triangle: 0 }));
-        assert_eq!((sight.free(from, Vec3::NEG_Z, 2.0), sight.free(from, Vec3::Z, 2.0)), (2.0, 2.0));
-        assert!(sight.is_free(from, from - 2.0 * Vec3::Z) && !sight.is_free(from, from - 4.0 * Vec3::Z));
-        assert_eq!(sight.normal(0), Vec3::Z);
-        mesh.normals = vec![Vec3::NEG_Z; 3];
-        assert_eq!(Sight::new(&mesh).normal(0), Vec3::NEG_Z);
-    }
 }

@@ -1,7 +1,7 @@
 //! Corners of triangles, listed by a key.
 
 /// For each key, the corners that have it, in ascending order: a counting sort.
-pub(super) struct Buckets {
+pub struct Buckets {
     /// Where the list of each key begins, and where the last ends.
     starts: Vec<u32>,
     corners: Vec<u32>,
@@ -9,7 +9,7 @@ pub(super) struct Buckets {
 
 impl Buckets {
     /// Lists all corners by their key, which is below `keys`; those without one are left out.
-    pub(super) fn new(keys: usize, corners: usize, key: impl Fn(u32) -> Option<u32>) -> Buckets {
+    pub fn new(keys: usize, corners: usize, key: impl Fn(u32) -> Option<u32>) -> Buckets {
         let all = 0..corners as u32;
         let mut starts = vec![0; keys + 1];
         for key in all.clone().filter_map(&key) {
@@ -31,22 +31,9 @@ impl Buckets {
     }
 
     /// The list of each key, to be ordered as needed.
-    pub(super) fn each(&mut self, mut visit: impl FnMut(usize, &mut [u32])) {
+    pub fn each(&mut self, mut visit: impl FnMut(usize, &mut [u32])) {
         for (key, ends) in self.starts.windows(2).enumerate() {
             visit(key, &mut self.corners[ends[0] as usize..ends[1] as usize]);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn corners_are_listed_by_key() {
-        let keys = [Some(2), None, Some(0), Some(2), Some(3)];
-        let mut lists = Vec::new();
-        Buckets::new(5, keys.len(), |corner| keys[corner as usize]).each(|_, list| lists.push(list.to_vec()));
-        assert_eq!(lists, [vec![2], vec![], vec![0, 3], vec![4], vec![]]);
     }
 }

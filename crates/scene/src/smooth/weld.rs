@@ -7,7 +7,7 @@ use crate::Position;
 ///
 /// Vertices are sorted by a hash of their positions. Where hashes are equal, by chance or by malice, the positions themselves decide, so
 /// that O(n log n) steps are enough for all.
-pub(super) fn weld<P: Position>(positions: &[P]) -> Vec<u32> {
+pub fn weld<P: Position>(positions: &[P]) -> Vec<u32> {
     let place = |entry: u64| bits(positions[entry as u32 as usize]);
     let hash = |entry: u64| entry >> 32;
     let mut entries: Vec<u64> = positions
@@ -40,18 +40,4 @@ fn mixed(bits: [u64; 3]) -> u32 {
         hash ^ hash >> 32
     });
     hash as u32
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::{DVec3, Vec3};
-
-    use super::*;
-
-    #[test]
-    fn equal_positions_are_the_point_of_the_first() {
-        assert_eq!(weld(&[Vec3::X, Vec3::Y, Vec3::X, Vec3::ZERO, Vec3::Y, -Vec3::ZERO]), [0, 1, 0, 3, 1, 3]);
-        assert_eq!(weld(&[DVec3::X, DVec3::X + DVec3::splat(f64::EPSILON)]), [0, 1]);
-        assert!(weld::<Vec3>(&[]).is_empty());
-    }
 }

@@ -8,7 +8,7 @@ const LARGEST: f64 = (1u64 << 53) as f64;
 
 /// The same JSON with all whole numbers as integers, in their places where they fit there: floats may be written as integers, so
 /// this changes nothing else. `-0.0` stays, as there is no such integer.
-pub(super) fn as_integers(json: &[u8]) -> Vec<u8> {
+pub fn as_integers(json: &[u8]) -> Vec<u8> {
     let mut text = Vec::with_capacity(json.len());
     let mut rest = 0;
     while rest < json.len() {
@@ -61,37 +61,4 @@ fn whole(token: &[u8]) -> Option<i64> {
     let number: f64 = serde_json::from_slice(token).ok()?;
     let is_whole = number.fract() == 0.0 && number.abs() <= LARGEST && !(number == 0.0 && number.is_sign_negative());
     is_whole.then_some(number as i64)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn converted(json: &str) -> String {
-        String::from_utf8(as_integers(json.as_bytes())).unwrap()
-    }
-
-    #[test]
-    fn whole_numbers_become_integers_in_their_places() {
-        assert_eq!(
-            converted(r#"{"count": 24.0, "a": [0.0,-3.00,2.5e1]}"#),
-            r#"{"count": 24  , "a": [0  ,-3   ,25   ]}"#
-        );
-        assert_eq!(converted("[1e3]"), "[1000]");
-    }
-
-    #[test]
-    fn all_else_stays() {
-        for json in [
-            r#"["24.0", "\"1.0", "\\", 0.5, -0.0, 1e400, 1e300, 7, -7]"#,
-            r#"{"1.0": "2.0"#,
-            "[1.0.0, 2., -, 1.e5, --1.0, 1.0-2]",
-            "\"",
-            "\"\\",
-            "",
-        ] {
-            assert_eq!(converted(json), json);
-        }
-        assert_eq!(as_integers(b"\xff1.0"), b"\xff1  ");
-    }
 }

@@ -33,10 +33,14 @@ use crate::{
 
 /// How a primitive's vertices form triangles, by its number in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mode {
+pub enum Mode {
+    /// They form none.
     PointsOrLines,
+    /// Three each.
     Triangles,
+    /// Each with the two before it.
     Strip,
+    /// Each with the one before it and the first.
     Fan,
 }
 
@@ -52,7 +56,7 @@ impl Mode {
     }
 
     /// Number of triangles formed by this many indices. Remaining indices are ignored.
-    fn count(self, indices: usize) -> usize {
+    pub fn count(self, indices: usize) -> usize {
         match self {
             Mode::PointsOrLines => 0,
             Mode::Triangles => indices / 3,
@@ -387,7 +391,7 @@ impl<'a> Survey<'a> {
 
 /// The vertices that `indices` refer to, ascending, if there are more than that; `indices` then refer to places in this list.
 /// Primitives that are small parts of the same vertices would else copy all of these, each of them.
-fn vertices_used(indices: &mut Cow<[u32]>, vertices: usize) -> Option<Vec<u32>> {
+pub fn vertices_used(indices: &mut Cow<[u32]>, vertices: usize) -> Option<Vec<u32>> {
     if indices.len() >= vertices {
         return None;
     }
@@ -401,7 +405,7 @@ fn vertices_used(indices: &mut Cow<[u32]>, vertices: usize) -> Option<Vec<u32>> 
 }
 
 /// Splits strips and fans into triangles with the same orientation (glTF 2.0, section 3.7.2.1).
-fn triangles(mode: Mode, indices: &[u32]) -> Cow<'_, [[u32; 3]]> {
+pub fn triangles(mode: Mode, indices: &[u32]) -> Cow<'_, [[u32; 3]]> {
     match mode {
         Mode::Triangles => indices.as_chunks().0.into(),
         Mode::Strip => indices
@@ -411,37 +415,5 @@ fn triangles(mode: Mode, indices: &[u32]) -> Cow<'_, [[u32; 3]]> {
             .collect(),
         Mode::Fan => indices.get(1..).unwrap_or_default().windows(2).map(|w| [w[0], w[1], indices[0]]).collect(),
         Mode::PointsOrLines => Cow::default(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn strips_and_fans_face_one_way() {
-        assert_eq!(*triangles(Mode::Triangles, &[0, 1, 2, 3, 4, 5, 6]), [[0, 1, 2], [3, 4, 5]]);
-        assert_eq!(*triangles(Mode::Strip, &[0, 1, 2, 3, 4]), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
-        assert_eq!(*triangles(Mode::Fan, &[0, 1, 2, 3]), [[1, 2, 0], [2, 3, 0]]);
-        assert!(triangles(Mode::Fan, &[]).is_empty());
-    }
-
-    #[test]
-    fn vertices_that_are_not_used_are_left_out() {
-        let mut indices = Cow::from(vec![7, 3, 9, 3]);
-        assert_eq!(vertices_used(&mut indices, 10), Some(vec![3, 7, 9]));
-        assert_eq!(*indices, [1, 0, 2, 0]);
-        assert_eq!(vertices_used(&mut indices, 4), None);
-        assert_eq!(*indices, [1, 0, 2, 0]);
-    }
-
-    #[test]
-    fn triangles_are_as_many_as_counted() {
-        let indices: Vec<u32> = (0..9).collect();
-        for mode in [Mode::Triangles, Mode::Strip, Mode::Fan, Mode::PointsOrLines] {
-            for count in 0..indices.len() {
-                assert_eq!(triangles(mode, &indices[..count]).len(), mode.count(count), "{mode:?} {count}");
-            }
-        }
     }
 }

@@ -28,19 +28,17 @@ mod environment;
 mod extensions;
 pub(crate) mod extras;
 mod instances;
-mod integers;
+pub(crate) mod integers;
 mod left_out;
 mod lights;
 mod material;
 mod materials;
-mod meshes;
+pub(crate) mod meshes;
 mod nodes;
-mod picture;
+pub(crate) mod picture;
 mod rigged;
-mod strided;
-#[cfg(test)]
-mod tests;
-mod uri;
+pub(crate) mod strided;
+pub(crate) mod uri;
 mod views;
 
 use std::path::Path;

@@ -103,35 +103,8 @@ fn wrap(number: Option<u32>) -> Wrap {
 
 /// Scale, then rotation, then offset. Positive rotations turn the coordinates counter-clockwise as seen with v downwards: this is
 /// what the extension's text and its examples say, while its shader code turns the other way.
-pub(crate) fn affine(scale: Vec2, rotation: f32, offset: Vec2) -> Affine2 {
+pub fn affine(scale: Vec2, rotation: f32, offset: Vec2) -> Affine2 {
     let (sin, cos) = rotation.sin_cos();
     let rotation = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
     Affine2 { matrix2: rotation * Mat2::from_diagonal(scale), translation: offset }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f32::consts::FRAC_PI_2;
-
-    use super::*;
-
-    /// The example in the extension's text: the lower left quarter of the image, rotated clockwise by a right angle.
-    #[test]
-    fn a_quarter_of_a_picture_is_shown_turned() {
-        let transform = affine(Vec2::splat(0.5), FRAC_PI_2, Vec2::Y);
-        let at = |u, v| transform.transform_point2(Vec2::new(u, v));
-        // What was in the lower left corner of the quarter is in its upper left one, as seen on the surface.
-        for (surface, picture) in
-            [((0.0, 0.0), (0.0, 1.0)), ((1.0, 0.0), (0.0, 0.5)), ((1.0, 1.0), (0.5, 0.5)), ((0.0, 1.0), (0.5, 1.0))]
-        {
-            let found = at(surface.0, surface.1);
-            assert!(found.distance(Vec2::new(picture.0, picture.1)) < 1e-6, "{surface:?}: {found}");
-        }
-    }
-
-    #[test]
-    fn scale_comes_before_offset() {
-        let transform = affine(Vec2::new(2.0, -1.0), 0.0, Vec2::Y);
-        assert_eq!(transform.transform_point2(Vec2::new(0.25, 0.25)), Vec2::new(0.5, 0.75));
-    }
 }

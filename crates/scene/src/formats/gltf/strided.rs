@@ -4,12 +4,18 @@ use bytemuck::AnyBitPattern;
 
 /// The type of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Component {
+pub enum Component {
+    /// A signed byte.
     I8,
+    /// A byte.
     U8,
+    /// A signed integer of 16 bits.
     I16,
+    /// An integer of 16 bits.
     U16,
+    /// An integer of 32 bits.
     U32,
+    /// A number.
     F32,
 }
 
@@ -28,7 +34,7 @@ impl Component {
     }
 
     /// Bytes.
-    pub(super) fn size(self) -> usize {
+    pub fn size(self) -> usize {
         match self {
             Component::I8 | Component::U8 => 1,
             Component::I16 | Component::U16 => 2,
@@ -44,27 +50,30 @@ impl Component {
 
 /// `count` elements, the first at the start of `bytes`, the others `stride` bytes apart; all are within `bytes`.
 #[derive(Clone, Copy)]
-pub(super) struct Strided<'a> {
-    pub(super) bytes: &'a [u8],
-    pub(super) count: usize,
+pub struct Strided<'a> {
+    /// What holds them.
+    pub bytes: &'a [u8],
+    /// How many there are.
+    pub count: usize,
     /// Bytes of an element.
-    pub(super) size: usize,
+    pub size: usize,
     /// Distance in bytes, at least the size of an element.
-    pub(super) stride: usize,
-    pub(super) component: Component,
+    pub stride: usize,
+    /// What an element consists of.
+    pub component: Component,
     /// Integers represent numbers in [0, 1] or [-1, 1].
-    pub(super) normalized: bool,
+    pub normalized: bool,
 }
 
 impl<'a> Strided<'a> {
     /// The elements in place, if they are contiguous, aligned, and in this machine's byte order.
-    pub(super) fn borrowed<T: AnyBitPattern>(&self) -> Option<&'a [T]> {
+    pub fn borrowed<T: AnyBitPattern>(&self) -> Option<&'a [T]> {
         let packed = self.stride == size_of::<T>() && cfg!(target_endian = "little");
         if packed { bytemuck::try_cast_slice(&self.bytes[..self.count * self.stride]).ok() } else { None }
     }
 
     /// Some of its elements, copied next to each other into `packed`.
-    pub(super) fn packed<'p>(&self, used: &[u32], packed: &'p mut Vec<u8>) -> Strided<'p> {
+    pub fn packed<'p>(&self, used: &[u32], packed: &'p mut Vec<u8>) -> Strided<'p> {
         packed.reserve_exact(used.len() * self.size);
         for &at in used {
             packed.extend_from_slice(&self.bytes[at as usize * self.stride..][..self.size]);
@@ -73,7 +82,7 @@ impl<'a> Strided<'a> {
     }
 
     /// The elements as vectors of numbers.
-    pub(super) fn numbers<const N: usize>(&self) -> Vec<[f32; N]> {
+    pub fn numbers<const N: usize>(&self) -> Vec<[f32; N]> {
         match self.component {
             Component::I8 => self.scaled(|c: i8| f32::from(c), i8::MAX.into()),
             Component::U8 => self.scaled(|c: u8| f32::from(c), u8::MAX.into()),
@@ -85,7 +94,7 @@ impl<'a> Strided<'a> {
     }
 
     /// The elements as integers, if that is their type.
-    pub(super) fn integers(&self) -> Vec<u32> {
+    pub fn integers(&self) -> Vec<u32> {
         let elements: Vec<[u32; 1]> = match self.component {
             Component::U8 => self.each(|c: u8| c.into()),
             Component::U16 => self.each(|c: u16| c.into()),
@@ -128,47 +137,3 @@ macro_rules! stored {
 }
 
 stored!(i8, u8, i16, u16, u32, f32);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn strided(bytes: &[u8], count: usize, stride: usize, component: Component, normalized: bool) -> Strided<'_> {
-        Strided { bytes, count, size: component.size(), stride, component, normalized }
-    }
-
-    #[test]
-    fn some_elements_are_those_of_all() {
-        let bytes = [1, 0, 9, 2, 0, 9, 3, 0, 9, 4, 0];
-        let (all, mut packed) = (strided(&bytes, 4, 3, Component::U16, false), Vec::new());
-        assert_eq!(all.integers(), [1, 2, 3, 4]);
-        assert_eq!(all.packed(&[1, 3], &mut packed).integers(), [2, 4]);
-        assert_eq!(packed, [2, 0, 4, 0]);
-    }
-
-    #[test]
-    fn normalized_integers_reach_their_ends() {
-        let ends = |bytes: &[u8], component, stride| strided(bytes, 1, stride, component, true).numbers::<2>();
-        assert_eq!(ends(&[0, 255], Component::U8, 2), [[0.0, 1.0]]);
-        // Both -128 and -127 are -1.
-        assert_eq!(ends(&[0x80, 0x7f], Component::I8, 2), [[-1.0, 1.0]]);
-        assert_eq!(ends(&[0x81, 0], Component::I8, 2), [[-1.0, 0.0]]);
-        assert_eq!(ends(&[0, 0, 0xff, 0xff], Component::U16, 4), [[0.0, 1.0]]);
-        assert_eq!(ends(&[0, 0x80, 0xff, 0x7f], Component::I16, 4), [[-1.0, 1.0]]);
-    }
-
-    #[test]
-    fn integers_that_are_not_normalized_stay_what_they_are() {
-        assert_eq!(strided(&[0xfe, 2, 0, 7], 2, 2, Component::I8, false).numbers(), [[-2.0], [0.0]]);
-        assert_eq!(strided(&[1, 0, 0, 1], 1, 4, Component::U32, false).numbers(), [[16_777_217_f32]]);
-        assert_eq!(strided(&[1, 9, 2], 2, 2, Component::U8, false).integers(), [1, 2]);
-        assert_eq!(strided(&[1, 1, 2, 0], 2, 2, Component::U16, false).integers(), [257, 2]);
-    }
-
-    #[test]
-    fn the_last_element_may_end_with_the_bytes() {
-        let bytes: Vec<u8> = [1f32, 2.0, 3.0].iter().flat_map(|x| x.to_le_bytes()).collect();
-        assert_eq!(strided(&bytes, 2, 8, Component::F32, false).numbers(), [[1.0], [3.0]]);
-        assert!(strided(&bytes, 2, 8, Component::F32, false).borrowed::<f32>().is_none());
-    }
-}

@@ -10,7 +10,7 @@ use percent_encoding::percent_decode_str;
 
 /// The target of a URI.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Uri<'a> {
+pub enum Uri<'a> {
     /// What follows `data:`.
     Data(&'a str),
     /// A file's name, decoded.
@@ -18,7 +18,8 @@ pub(super) enum Uri<'a> {
 }
 
 impl<'a> Uri<'a> {
-    pub(super) fn new(uri: &'a str) -> Uri<'a> {
+    /// By its scheme.
+    pub fn new(uri: &'a str) -> Uri<'a> {
         match uri.split_at_checked("data:".len()) {
             Some((scheme, data)) if scheme.eq_ignore_ascii_case("data:") => Uri::Data(data),
             _ => Uri::File(percent_decode_str(uri).decode_utf8_lossy()),
@@ -27,7 +28,7 @@ impl<'a> Uri<'a> {
 }
 
 /// The bytes of `mediatype;base64,DATA` or `mediatype,DATA`; `None` if the data is invalid.
-pub(super) fn decode(data: &str) -> Option<Vec<u8>> {
+pub fn decode(data: &str) -> Option<Vec<u8>> {
     let (header, data) = data.split_once(',')?;
     let base64 = header.rsplit(';').next().is_some_and(|word| word.trim().eq_ignore_ascii_case("base64"));
     if !base64 {
@@ -44,40 +45,5 @@ pub(super) fn decode(data: &str) -> Option<Vec<u8>> {
             let plain: Vec<u8> = percent_decode_str(data).filter(|byte| !byte.is_ascii_whitespace()).collect();
             engine.decode(plain).ok()
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_files_are_decoded() {
-        assert_eq!(Uri::new("my%20model.bin"), Uri::File("my model.bin".into()));
-        assert_eq!(Uri::new("b%C3%BCro.bin"), Uri::File("büro.bin".into()));
-        assert_eq!(Uri::new("ü"), Uri::File("ü".into()));
-        assert_eq!(Uri::new("100%.bin"), Uri::File("100%.bin".into()));
-    }
-
-    #[test]
-    fn data_is_decoded_in_all_its_spellings() {
-        let bytes = |uri: &str| match Uri::new(uri) {
-            Uri::Data(data) => decode(data),
-            Uri::File(name) => panic!("{name}"),
-        };
-        for uri in [
-            "data:application/octet-stream;base64,AQL/",
-            "data:;base64,AQL/",
-            "DATA:image/png;name=a;BASE64,AQL/",
-            "data:;base64,AQ\r\nL/",
-            "data:;base64,AQL%2F",
-            "data:,%01%02%FF",
-        ] {
-            assert_eq!(bytes(uri).as_deref(), Some(&[1, 2, 255][..]), "{uri}");
-        }
-        assert_eq!(bytes("data:;base64,AQ").as_deref(), Some(&[1][..]));
-        assert_eq!(bytes("data:;base64,AQ==").as_deref(), Some(&[1][..]));
-        assert_eq!(bytes("data:;base64,").as_deref(), Some(&[][..]));
-        assert_eq!([bytes("data:"), bytes("data:;base64"), bytes("data:;base64,*")], [None, None, None]);
     }
 }

@@ -3,7 +3,7 @@
 use memchr::memchr;
 
 /// Iterates over the lines.
-pub(super) struct Lines<'a> {
+pub struct Lines<'a> {
     rest: &'a [u8],
     joined: Vec<u8>,
     /// Number of lines read so far: the number of the last one.
@@ -11,13 +11,14 @@ pub(super) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    pub(super) fn new(text: &'a [u8]) -> Lines<'a> {
+    /// From the start of a file.
+    pub fn new(text: &'a [u8]) -> Lines<'a> {
         Lines { rest: text, joined: Vec::new(), number: 0 }
     }
 
     /// The next line with its number, and with its continuation lines, trimmed; `None` at the end. Comments are never
     /// continued, because their authors do not expect that of a path in them.
-    pub(super) fn next(&mut self) -> Option<(usize, &[u8])> {
+    pub fn next_line(&mut self) -> Option<(usize, &[u8])> {
         let line = self.take()?;
         let Some(begun) = continued(line) else { return Some((self.number, line)) };
         self.joined.clear();
@@ -50,19 +51,4 @@ impl<'a> Lines<'a> {
 /// The line without its backslash, if it continues on the next line.
 fn continued(line: &[u8]) -> Option<&[u8]> {
     line.strip_suffix(b"\\").filter(|line| !line.starts_with(b"#"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_backslash_joins_lines_but_not_behind_a_comment() {
-        let mut lines = Lines::new(b"f 1 \\\r\n2 \\\n 3\n# C:\\models\\\n\nv 1\\");
-        let mut all = Vec::new();
-        while let Some((number, line)) = lines.next() {
-            all.push(format!("{number} {}", String::from_utf8_lossy(line)));
-        }
-        assert_eq!(all, ["3 f 1  2  3", "4 # C:\\models\\", "5 ", "6 v 1"]);
-    }
 }

@@ -15,13 +15,11 @@
 //! - Points, lines and free-form surfaces are ignored with a warning; groups of other kinds have no effect.
 
 mod face;
-mod lines;
-mod map;
+pub(crate) mod lines;
+pub(crate) mod map;
 mod mtl;
 mod parse;
-mod smoothing;
-#[cfg(test)]
-mod tests;
+pub(crate) mod smoothing;
 
 use std::{
     collections::{HashMap, HashSet},

@@ -125,7 +125,7 @@ fn read_library(path: &Path, text: &[u8], entries: &mut Vec<Entry>, draft: &mut 
     let mut notes = Notes::default();
     let mut lines = Lines::new(text);
     let (mut entry, first_entry): (Option<Entry>, _) = (None, entries.len());
-    while let Some((number, line)) = lines.next() {
+    while let Some((number, line)) = lines.next_line() {
         let (word, rest) = split_word(line);
         if is_map(word)
             && let Some(map) = Map::parse(&decoded(rest))

@@ -120,7 +120,7 @@ impl Parser {
     /// Reads the lines whose first words are `wanted`.
     fn read(&mut self, path: &Path, text: &[u8], wanted: fn(&[u8]) -> bool) -> Result<(), LoadError> {
         let mut lines = Lines::new(text);
-        while let Some((number, line)) = lines.next() {
+        while let Some((number, line)) = lines.next_line() {
             let (word, rest) = split_word(line);
             if wanted(word) {
                 self.line = number;

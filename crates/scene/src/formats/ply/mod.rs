@@ -12,8 +12,6 @@
 mod face;
 mod header;
 mod rows;
-#[cfg(test)]
-mod tests;
 mod vertex;
 
 use std::path::Path;

@@ -12,8 +12,6 @@
 
 mod ascii;
 mod binary;
-#[cfg(test)]
-mod tests;
 
 use std::path::Path;
 

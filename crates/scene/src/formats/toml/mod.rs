@@ -12,12 +12,8 @@ mod one_or_many;
 mod parts;
 mod publish;
 pub(crate) mod schema;
-#[cfg(test)]
-mod schema_tests;
 mod sky;
 pub(crate) mod spanned;
-#[cfg(test)]
-mod tests;
 
 use std::path::Path;
 

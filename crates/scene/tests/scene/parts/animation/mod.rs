@@ -1,0 +1,3 @@
+mod parts;
+mod rig;
+mod track;

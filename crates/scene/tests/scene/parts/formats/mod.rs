@@ -1,0 +1,10 @@
+mod colors;
+mod gltf;
+mod notes;
+mod obj;
+mod ply;
+mod polygon;
+mod stl;
+mod text;
+mod toml;
+mod vertices;

@@ -1,0 +1,34 @@
+//! Parts of the crate by themselves.
+
+mod animation;
+mod border;
+mod builder;
+mod builtin;
+mod camera;
+mod dielectric;
+mod draft;
+mod environment;
+mod error;
+mod export;
+mod formats;
+mod framing;
+mod geometry_check;
+mod ground;
+mod info;
+mod lamps;
+mod light;
+mod lights;
+mod loaded_mesh;
+mod names;
+mod objects;
+mod opacity;
+mod open;
+mod principled;
+mod quote;
+mod shapes;
+mod smooth;
+mod texture;
+mod up;
+mod usable;
+mod vertices;
+mod warnings;

@@ -1,0 +1,5 @@
+mod decode;
+mod files;
+mod heights;
+mod missing_uvs;
+mod packed;
