@@ -13,7 +13,7 @@ An entry of mutants.toml has
     file, find          a stretch of the source that occurs in it exactly once;
     part, replace       what is replaced, which occurs in that stretch once (without `part` all of it), and by what: an expression;
     kind = "statement"  if both are statements instead; an empty one leaves the step out;
-    tests               where to look first: "PACKAGE/TARGET FILTER", where TARGET is `lib`, `bin`, or a test.
+    tests               where to look first: "FOLDER/TARGET FILTER", where FOLDER is one of `crates`, and TARGET `lib`, `bin`, or a test.
 
 An error that the tests named there miss meets all others. A test that fails is run once more without any error, and must pass. Results are
 written to the table in README.md, and kept in the folder of the build, so that a run that was stopped goes on.
@@ -36,7 +36,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PACKAGES = ["memory", "files", "scene", "scene-tests", "image", "layout", "render", "emulator", "lightmesh", "cli"]
+PACKAGES = ["memory", "files", "scene-tests", "image", "layout", "render-tests", "emulator", "lightmesh", "cli"]
 """Packages whose tests are run, if not told otherwise: those that make images."""
 VARIABLE = "LIGHTMESH_MUTANT"
 FAILED = re.compile(r"^test (.+?)(?: - should panic)? \.\.\. FAILED")
@@ -178,7 +178,7 @@ def write_tree(tree, mutants):
 
 
 def build(tree, target, packages):
-    """Builds all tests. Returns programs by PACKAGE/TARGET, with the folder in which each runs."""
+    """Builds all tests. Returns programs by FOLDER/TARGET, with the folder in which each runs."""
     names = [word for package in packages for word in ("-p", package if package == "lightmesh" else f"lightmesh-{package}")]
     command = ["cargo", "test", "--no-run", "--lib", "--bins", "--tests", "--message-format=json", *names]
     environment = {**os.environ, "CARGO_TARGET_DIR": str(target), "CARGO_INCREMENTAL": "0"}

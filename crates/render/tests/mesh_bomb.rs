@@ -1,5 +1,4 @@
 //! A small mesh file whose lights take gigabytes, each a little, is refused: alone in its process, since the allocator counts what all tests hold.
-#![cfg(feature = "mesh-file")]
 
 use std::io::Write;
 

@@ -142,7 +142,7 @@ fn texts() -> [Input; 17] {
         Input::new("obj", "a polygon of many corners", format!("{TRIANGLE}f{}\n", many(100_000, " 1 2 3")), Opens),
         Input::new("obj", "continued for ever", format!("{triangle}f {}", many(100_000, "\\\n")), Opens),
         Input::new("obj", "a gear of many teeth", gear(90_000), Opens),
-        Input::new("obj", "many libraries", format!("{}{triangle}", numbered(100_000, "mtllib #.mtl\n")), Opens),
+        Input::new("obj", "many libraries", format!("{}{triangle}", numbered(50_000, "mtllib #.mtl\n")), Opens),
         Input::new(
             "obj",
             "many materials",

@@ -6,7 +6,7 @@ use lightmesh_testkit::{TECHNIQUES, pile, render};
 
 use crate::lists::kinds;
 
-const SIZE: [u32; 2] = [61, 47];
+const SIZE: [u32; 2] = [41, 31];
 
 fn ways() -> Vec<Settings> {
     let settings = Settings::default().with_size(SIZE).with_samples(16).with_layers(true);
@@ -27,9 +27,9 @@ fn a_crop_is_a_part_of_the_whole() {
         let whole = render(&scene, &settings);
         for crop in [
             Crop::new([0, 0], SIZE),
-            Crop::new([19, 11], [23, 17]),
-            Crop::new([60, 46], [1, 1]),
-            Crop::new([0, 30], [61, 3]),
+            Crop::new([13, 7], [17, 12]),
+            Crop::new([40, 30], [1, 1]),
+            Crop::new([0, 20], [41, 3]),
         ] {
             let part = render(&scene, &settings.clone().with_crop(crop));
             let expected = whole.image.cropped(crop.first, crop.size).unwrap();
@@ -43,7 +43,7 @@ fn a_crop_is_a_part_of_the_whole() {
 fn a_crop_out_of_the_image_is_refused() {
     let scene = pile(glam::DVec3::ZERO, &kinds());
     let renderer = lightmesh_render::Renderer::new(lightmesh_render::Device::Cpu).unwrap();
-    for crop in [Crop::new([61, 0], [1, 1]), Crop::new([0, 0], [62, 1]), Crop::new([5, 5], [0, 5])] {
+    for crop in [Crop::new([41, 0], [1, 1]), Crop::new([0, 0], [42, 1]), Crop::new([5, 5], [0, 5])] {
         let error = renderer.render(&scene, &Settings::default().with_size(SIZE).with_crop(crop)).unwrap_err();
         assert!(
             matches!(error, RenderError::Setting { .. }) && error.to_string().contains(&crop.to_string()),

@@ -1,7 +1,9 @@
 //! Textures that are smaller in the image than they are: no moiré, nothing brighter or darker, in mirrors as well.
 
+use std::ops::Range;
+
 use glam::{Affine2, DVec3, Vec2, Vec3, Vec3Swizzles};
-use lightmesh_render::{Filter, Frame, Settings, Sharing};
+use lightmesh_render::{Crop, Filter, Frame, Settings, Sharing};
 use lightmesh_scene::{Material, Scene, Texture, TextureUse, Wrap};
 use lightmesh_testkit::{SceneDraft, render};
 
@@ -47,10 +49,14 @@ fn floor(size: [u32; 2], side: u32, wrap: Wrap) -> Scene {
     textured(draft, checks(size, side), CHECKS / checks_across)
 }
 
-/// Pixels of some rows, one channel.
-fn rows(frame: &Frame, rows: std::ops::Range<usize>) -> impl Iterator<Item = f64> {
-    let width = SIZE[0] as usize;
-    frame.color()[rows.start * width..rows.end * width].iter().map(|color| f64::from(color[0]))
+/// Settings for rows of the image alone.
+fn of(settings: &Settings, rows: &Range<usize>) -> Settings {
+    settings.clone().with_crop(Crop::new([0, rows.start as u32], [SIZE[0], rows.len() as u32]))
+}
+
+/// All pixels, one channel.
+fn values(frame: &Frame) -> impl Iterator<Item = f64> {
+    frame.color().iter().map(|color| f64::from(color[0]))
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -59,23 +65,22 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / f64::from(count)
 }
 
-fn with(scene: &Scene, aa: u32) -> Frame {
-    render(scene, &Settings::default().with_size(SIZE).with_aa(aa))
+fn with(scene: &Scene, aa: u32, rows: Range<usize>) -> Frame {
+    render(scene, &of(&Settings::default().with_size(SIZE).with_aa(aa), &rows))
 }
 
-/// The largest and the mean difference of rows from those of another image.
-fn differences(frame: &Frame, other: &Frame, range: std::ops::Range<usize>) -> [f64; 2] {
-    let apart = || rows(frame, range.clone()).zip(rows(other, range.clone())).map(|(a, b)| (a - b).abs());
+/// The largest and the mean difference from another image.
+fn differences(frame: &Frame, other: &Frame) -> [f64; 2] {
+    let apart = || values(frame).zip(values(other)).map(|(a, b)| (a - b).abs());
     [apart().fold(0.0, f64::max), mean(apart())]
 }
 
 /// Fails if rows of an image with 8 samples differ from those of many samples, each of which sees less than a texel: by more than `most` at
 /// one pixel, on average, or in their relative means.
-fn check(scene: &Scene, settings: &Settings, range: std::ops::Range<usize>, most: [f64; 3], what: &str) {
-    let reference = render(scene, &settings.clone().with_aa(256));
-    let frame = render(scene, &settings.clone().with_aa(8));
-    let [largest, usual] = differences(&frame, &reference, range.clone());
-    let means = [&frame, &reference].map(|frame| mean(rows(frame, range.clone())));
+fn check(scene: &Scene, settings: &Settings, rows: Range<usize>, most: [f64; 3], what: &str) {
+    let [reference, frame] = [256, 8].map(|aa| render(scene, &of(settings, &rows).with_aa(aa)));
+    let [largest, usual] = differences(&frame, &reference);
+    let means = [&frame, &reference].map(|frame| mean(values(frame)));
     assert!(largest < most[0] && usual < most[1], "{what}: {largest}, {usual} on average, {means:?}");
     let [found, wanted] = means;
     assert!((found / wanted - 1.0).abs() < most[2], "{what}: {found} instead of {wanted}");
@@ -93,8 +98,8 @@ fn checks_to_the_horizon_have_no_moire_and_keep_their_energy() {
         check(&scene, &settings, HORIZON..CLOSE, [0.2, 0.025, 0.01], &format!("{size:?}, {wrap:?}"));
         if size[0] % 2 == 0 && size[1] % 2 == 0 {
             // Many checks in a pixel: their mean.
-            let most =
-                rows(&with(&scene, 8), HORIZON..HORIZON + 5).map(|value| (value - 0.5).abs()).fold(0.0, f64::max);
+            let frame = with(&scene, 8, HORIZON..HORIZON + 5);
+            let most = values(&frame).map(|value| (value - 0.5).abs()).fold(0.0, f64::max);
             assert!(most < 0.03, "{size:?}, {wrap:?}: {most}");
         }
     }
@@ -111,8 +116,8 @@ fn a_clamped_texture_ends_in_the_distance() {
 
 #[test]
 fn one_sample_sees_a_point() {
-    let hard = with(&floor([64, 64], 8, Wrap::Repeat), 1);
-    let usual = mean(rows(&hard, HORIZON..CLOSE).map(|value| (value - 0.5).abs()));
+    let hard = with(&floor([64, 64], 8, Wrap::Repeat), 1, HORIZON..CLOSE);
+    let usual = mean(values(&hard).map(|value| (value - 0.5).abs()));
     assert!(usual > 0.4, "black or white, not grey: {usual}");
 }
 
@@ -124,7 +129,7 @@ fn a_pixel_of_a_whole_number_of_texels_sees_that_level() {
         let draft = draft.orthographic([0.0, 5.0, 0.0], [0.0, 0.0, 0.0], height);
         let scene = textured(draft, checks([16, 16], 1), Vec2::splat(1.0 / 16.0));
         let frame = render(&scene, &Settings::default().with_size(SIZE).with_aa(4).with_filter(Filter::Box));
-        rows(&frame, 0..SIZE[1] as usize).map(|value| (value - 0.5).abs()).fold(0.0, f64::max)
+        values(&frame).map(|value| (value - 0.5).abs()).fold(0.0, f64::max)
     };
     // A quarter of the pixel's area has an edge of two texels: the first level, in which all texels are grey.
     assert!(view(4.0) < 1e-6 && view(8.0) < 1e-6, "{} {}", view(4.0), view(8.0));

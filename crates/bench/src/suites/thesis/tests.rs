@@ -8,8 +8,8 @@ use lightmesh::{Device, Observer};
 
 use crate::{BenchError, Key, Plan, Results, Row, Suite};
 
-/// 1024 pixels become 16.
-const SHRINK: u32 = 64;
+/// 1024 pixels become 8.
+const SHRINK: u32 = 128;
 
 #[derive(Default)]
 struct Listener {
@@ -99,26 +99,26 @@ fn the_cells_of_the_thesis_are_complete() {
 
 #[test]
 fn pictures_refer_to_the_reference() {
-    let (results, _) = run(&tiny(true));
+    let (results, _) = whole();
     let reference = "figure 1: area shadows, 225 per light";
     let others = results.pictures.iter().filter(|picture| picture.reference.as_deref() == Some(reference));
     assert_eq!((results.pictures.len(), others.count()), (10, 9));
     assert_eq!((results.pictures[0].id.as_str(), &results.pictures[0].reference), (reference, &None));
     assert!(results.pictures.iter().all(|picture| picture.png.starts_with(b"\x89PNG")));
-    let radii = of(&results, "figures 12-15");
+    let radii = of(results, "figures 12-15");
     assert!(radii.iter().all(|row| row.values["mean_flip"] > 0.0 && row.values["rmse"] > 0.0));
     // Each image has one sample of a pixel. With as many samples of a light, lists then have the reference's bits.
-    let figure = of(&results, "figure 1");
+    let figure = of(results, "figure 1");
     assert!(figure.iter().all(|row| row.values["rays"] == row.values["pixels"]), "{figure:?}");
     let lists = figure.iter().find(|row| word(row, "lookup") == "lists").unwrap();
     assert_eq!([lists.values["mean_flip"], lists.values["rmse"]], [0.0; 2]);
-    assert!(results.quick && results.notes.iter().any(|note| note.starts_with("Short version: ")));
 }
 
 #[test]
 fn without_time_rows_are_left_out_and_named() {
     let (results, _) = run(&Plan { budget: Duration::from_nanos(1), ..tiny(true) });
     assert!(results.rows.is_empty() && results.pictures.is_empty());
+    assert!(results.quick && results.notes.iter().any(|note| note.starts_with("Short version: ")));
     let note = results.notes.iter().find(|note| note.starts_with("Dropped because of the time budget, ")).unwrap();
     assert!(note.contains("timings: ") && note.contains("figure 11: "), "{note}");
 }

@@ -35,7 +35,7 @@ const WITHOUT_TESTS: [&str; 3] = ["render", "scene", "image"];
 
 #[test]
 fn no_test_is_beside_the_code() {
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut folders: Vec<PathBuf> = WITHOUT_TESTS.iter().map(|name| crates.join(name).join("src")).collect();
     let (mut files, mut skipped) = (0, Vec::new());
     while let Some(folder) = folders.pop() {

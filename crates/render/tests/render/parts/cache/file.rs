@@ -164,7 +164,11 @@ fn cut_off_and_longer_files_are_refused() {
     let scene = scene(0.0);
     let (_folder, path, bytes) = saved(&scene);
     for length in 0..bytes.len() {
-        let fault = fault(&scene, &path, &bytes[..length]);
+        // Files are slow: most are given as bytes.
+        let fault = match length {
+            0..64 => fault(&scene, &path, &bytes[..length]),
+            _ => decoded(&bytes[..length], &scene).unwrap_err(),
+        };
         // What begins as something else may be something else.
         assert_eq!(fault.is_replaceable(), length >= MAGIC.len(), "{length} bytes: {fault}");
     }

@@ -1,4 +1,3 @@
-#[cfg(feature = "mesh-file")]
 mod file;
 mod host;
 mod noticed;

@@ -32,7 +32,7 @@ fn reflected(facets: &Facets, base: Vec3, layer: Vec3, cosine: f32) -> Vec3 {
     let lobe = Lobe::new(facets, &mut coefficients(base, layer), &sight(cosine));
     let eye = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     // Even steps of the angles, so that lobes at the horizon are not missed.
-    let steps = 1200;
+    let steps = 300;
     let step = std::f32::consts::FRAC_PI_2 / steps as f32;
     let mut sum = glam::DVec3::ZERO;
     for i in 0..steps {
