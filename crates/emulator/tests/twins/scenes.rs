@@ -139,7 +139,8 @@ fn lamps() -> Scene {
 
 /// Stairs beside a wall, with steps so low that several belong to one cell.
 fn steps() -> Scene {
-    let draft = SceneDraft::new().cuboid([-3.0, -0.5, -3.5], [3.0, 0.0, 3.0]).cuboid([-3.0, 0.0, -3.5], [3.0, 3.0, -3.0]);
+    let draft =
+        SceneDraft::new().cuboid([-3.0, -0.5, -3.5], [3.0, 0.0, 3.0]).cuboid([-3.0, 0.0, -3.5], [3.0, 3.0, -3.0]);
     let step = |draft: SceneDraft, index: i32| {
         let front = 1.5 - 0.25 * f64::from(index);
         draft.cuboid([-1.5, 0.0, front - 0.25], [1.5, 0.12 * f64::from(index + 1), front])

@@ -35,6 +35,14 @@ fn total(lights: &[Light]) -> f32 {
 }
 
 #[test]
+fn triangles_of_an_open_lamp_that_face_opposite_ways_are_one() {
+    let [a, b, c, d] = [[-1.0, 4.0, -0.5], [1.0, 4.0, -0.5], [1.0, 4.0, 0.5], [-1.0, 4.0, 0.5]];
+    let mut geometry = room(&[[a, b, c], [a, d, c]]);
+    let [light] = lamps(&mut geometry).try_into().unwrap();
+    assert!((light.intensity - Vec3::new(4.0, 2.0, 1.0)).length() < 1e-5, "{light:?}");
+}
+
+#[test]
 fn a_rectangle_becomes_that_rectangle_whatever_its_winding() {
     // Turned by 30 degrees, under the ceiling.
     let (cos, sin) = (0.5 * 3.0f32.sqrt(), 0.5);
