@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("cargo::rustc-check-cfg=cfg(no_cxx)");
+    println!("cargo::rustc-check-cfg=cfg(no_cxx, needs_fma)");
     for variable in ["LIGHTMESH_EMULATE", "LIGHTMESH_REQUIRE_CXX", "CXX", "CLIPPY_ARGS"] {
         println!("cargo::rerun-if-env-changed={variable}");
     }
@@ -45,6 +45,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         modules.retain(|(module, _)| *module == "own" || chosen.split(',').any(|name| name == *module));
     }
     compile(&sources, &modules, &[&here.join("shim"), &renderer], &out)?;
+    if has_fma() {
+        println!("cargo::rustc-cfg=needs_fma");
+    }
     println!("cargo::rustc-link-search=native={}", out.display());
     println!("cargo::rustc-link-lib=static=emulated_kernels");
     let library = if env::var("CARGO_CFG_TARGET_VENDOR")? == "apple" { "c++" } else { "stdc++" };
@@ -77,6 +80,10 @@ fn compile(
     build.opt_level(2).flag("-ffp-contract=off").flag("-fno-strict-aliasing").flag("-fno-math-errno");
     // Nothing replaces functions of the library, so they may be inlined.
     build.flag("-fvisibility=hidden");
+    // Half of the time of arithmetic goes into calls of `fmaf` else.
+    if has_fma() {
+        build.flag("-mfma").flag("-mpopcnt");
+    }
     // Makes reads of uninitialised variables visible.
     build.flag_if_supported("-ftrivial-auto-var-init=pattern");
     // Fibres use `longjmp` to switch to another stack, which a fortified one rejects.
@@ -98,6 +105,15 @@ fn compile(
     Ok(())
 }
 
+/// Whether this processor, on which the tests will run, multiplies and adds in one step.
+fn has_fma() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    let has = is_x86_feature_detected!("fma") && is_x86_feature_detected!("popcnt");
+    #[cfg(not(target_arch = "x86_64"))]
+    let has = false;
+    has && env::var("HOST").is_ok_and(|host| env::var("TARGET").is_ok_and(|target| target == host))
+}
+
 /// A file that refers to every module; without it the linker would drop them.
 fn table(modules: &[(&str, &Path)]) -> String {
     let mut text = "namespace emulator {\n".to_owned();
@@ -109,7 +125,7 @@ fn table(modules: &[(&str, &Path)]) -> String {
 
 /// Everything that the library depends on.
 fn state(sources: &[PathBuf], modules: &[(&str, &Path)]) -> Result<Vec<u8>, Box<dyn Error>> {
-    let mut state = format!("{modules:?}{:?}", env::var("CXX")).into_bytes();
+    let mut state = format!("{modules:?}{:?}{}", env::var("CXX"), has_fma()).into_bytes();
     state.extend(fs::read(Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("build.rs"))?);
     for path in sources {
         state.extend(path.as_os_str().as_encoded_bytes());

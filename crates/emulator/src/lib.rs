@@ -118,6 +118,11 @@ impl Emulator {
     }
 
     fn with_ledger(ledger: Ledger) -> Emulator {
+        #[cfg(needs_fma)]
+        assert!(
+            is_x86_feature_detected!("fma") && is_x86_feature_detected!("popcnt"),
+            "the emulated kernels were compiled on a newer processor; compile them here: cargo clean -p lightmesh-emulator"
+        );
         Emulator { id: new_id(), ledger: Arc::new(ledger), queue: Mutex::default(), brute_force: true, slow: false }
     }
 

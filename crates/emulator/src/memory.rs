@@ -2,7 +2,6 @@
 
 use std::alloc::Layout;
 use std::collections::BTreeMap;
-use std::mem::MaybeUninit;
 use std::ptr::NonNull;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -158,13 +157,11 @@ impl Memory {
     }
 
     fn poison(&self) {
-        // SAFETY: whole words within the allocation, which is aligned; nobody else accesses it now.
-        let words =
-            unsafe { std::slice::from_raw_parts_mut(self.start.as_ptr().cast::<MaybeUninit<u32>>(), self.bytes / 4) };
-        words.fill(MaybeUninit::new(POISON));
-        for at in words.len() * 4..self.bytes {
-            // SAFETY: within the allocation.
-            unsafe { self.start.add(at).write(POISON.to_ne_bytes()[at % 4]) };
+        const PATTERN: [u32; 1024] = [POISON; 1024];
+        for at in (0..self.bytes).step_by(size_of_val(&PATTERN)) {
+            let bytes = size_of_val(&PATTERN).min(self.bytes - at);
+            // SAFETY: within the allocation; nobody else accesses it now.
+            unsafe { self.start.add(at).copy_from_nonoverlapping(NonNull::from(&PATTERN).cast(), bytes) };
         }
     }
 }

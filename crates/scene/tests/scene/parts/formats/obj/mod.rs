@@ -488,7 +488,7 @@ fn files_with_paths_of_another_computer_are_found_next_to_the_file() {
 #[test]
 fn very_many_lines_of_one_kind_are_one_warning_and_take_no_time() {
     let lines: String =
-        (0..200_000).map(|i| format!("odd{i} 1\nmtllib none{i}.mtl\nusemtl gone{i}\nf 1//1 2//1 3//1\n")).collect();
+        (0..40_000).map(|i| format!("odd{i} 1\nmtllib none{i}.mtl\nusemtl gone{i}\nf 1//1 2//1 3//1\n")).collect();
     let warnings = open(&(TETRAHEDRON.to_owned() + &lines)).warnings;
     assert_eq!(warnings.len(), 101, "{warnings:?}");
     assert!(warnings.iter().map(String::len).sum::<usize>() < 50_000);
