@@ -79,7 +79,9 @@ def test_partial(renderer, scene):
 def test_interrupt():
     """Ctrl-C stops a render, as KeyboardInterrupt."""
     script = (
-        "import lightmesh, sys\n"
+        "import lightmesh, signal, sys\n"
+        # Whoever runs the tests may ignore Ctrl-C, as a shell does for what it starts in the background.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "scene = lightmesh.Scene.builtin('childpark')\n"
         "try:\n"
         "    lightmesh.Renderer('cpu').render(scene, size=(2000, 2000), mode='area', samples=4096, progress=lambda _: print('up', flush=True))\n"
