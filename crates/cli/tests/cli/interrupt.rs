@@ -84,14 +84,15 @@ fn until<T>(mut ask: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Waits until the program catches signals.
+/// Waits until the program catches all of the signals, one after the other.
 fn await_start(child: &Child) {
     if cfg!(target_os = "linux") {
         let path = format!("/proc/{}/status", child.id());
         until(|| {
             let status = std::fs::read_to_string(&path).unwrap();
             let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
-            (u64::from_str_radix(mask.trim(), 16).unwrap() >> 14 & 1 == 1).then_some(())
+            let caught = u64::from_str_radix(mask.trim(), 16).unwrap();
+            [SIGINT, SIGTERM, SIGHUP].iter().all(|signal| caught >> (signal - 1) & 1 == 1).then_some(())
         });
     } else {
         sleep(Duration::from_millis(200));
