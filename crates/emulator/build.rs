@@ -80,7 +80,7 @@ fn compile(
     build.opt_level(2).flag("-ffp-contract=off").flag("-fno-strict-aliasing").flag("-fno-math-errno");
     // Nothing replaces functions of the library, so they may be inlined.
     build.flag("-fvisibility=hidden");
-    // Half of the time of arithmetic goes into calls of `fmaf` else.
+    // Else each of these operations is a call of `fmaf`.
     if has_fma() {
         build.flag("-mfma").flag("-mpopcnt");
     }

@@ -16,6 +16,8 @@ use crate::run::Place;
 
 /// Each signal with its exit code.
 const SIGNALS: [(&str, i32); 3] = [("INT", 130), ("TERM", 143), ("HUP", 129)];
+/// Their numbers.
+const CAUGHT: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 /// Only a guard: how soon the program ends is measured elsewhere.
 const LIMIT: Duration = Duration::from_secs(30);
 const LOOK: Duration = Duration::from_millis(2);
@@ -57,7 +59,7 @@ impl Running {
 fn obey_signals() {
     static DONE: Once = Once::new();
     DONE.call_once(|| {
-        for signal in [SIGINT, SIGTERM, SIGHUP] {
+        for signal in CAUGHT {
             register_conditional_default(signal, Arc::new(AtomicBool::new(true))).unwrap();
         }
     });
@@ -92,7 +94,7 @@ fn await_start(child: &Child) {
             let status = std::fs::read_to_string(&path).unwrap();
             let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
             let caught = u64::from_str_radix(mask.trim(), 16).unwrap();
-            [SIGINT, SIGTERM, SIGHUP].iter().all(|signal| caught >> (signal - 1) & 1 == 1).then_some(())
+            CAUGHT.iter().all(|signal| caught >> (signal - 1) & 1 == 1).then_some(())
         });
     } else {
         sleep(Duration::from_millis(200));
