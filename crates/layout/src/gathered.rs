@@ -1,6 +1,6 @@
 //! Gathered light: its tables, and the arguments of its kernels.
 
-use crate::constants::BINS;
+use crate::constants::{BINS, ORDERS};
 use crate::geometry::{Hit, ListedRay, Rays, Tally, Vec3};
 use crate::record::records;
 use crate::scene::{Sampling, Scene};
@@ -17,8 +17,8 @@ records! {
         level: i32,
         /// The kind of surface.
         kind: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// 1: the cell of a node is smaller than the one that was asked at first.
+        finer: u32,
     }
 
     /// Numbers of names: open addressing with linear probing.
@@ -95,6 +95,8 @@ records! {
         mean: Vec3,
         /// How it changes as the normal turns: along x, y and z.
         tilt: [Vec3; 3],
+        /// The most radiance that comes from any direction, channel by channel.
+        most: Vec3,
     }
 
     /// Radiance by direction.
@@ -113,27 +115,15 @@ records! {
         all: Bins,
         /// That of rays that go far.
         beyond: Bins,
-        /// 1: some rays do not.
+        /// 1: some rays do not go far.
         has_near: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
-    }
-
-    /// What a fine site receives.
-    FineLight {
-        /// The light.
-        light: SurfaceLight,
-        /// The distance of what is nearest in front of it.
-        nearest: f32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
     }
 
     /// What a ray of a site sees.
     SeenRay {
         /// Where the other light is asked for.
         position: Vec3,
-        /// The level of the cell that is asked.
+        /// The level of the cell that is asked at first.
         level: i32,
         /// Geometric normal there; unit length.
         normal: Vec3,
@@ -141,7 +131,7 @@ records! {
         kind: u32,
         /// Emitted light, light that lights give, or the surroundings.
         radiance: Vec3,
-        /// The site that answers; none if something is in the way.
+        /// The node that answers; none if something is in the way.
         node: u32,
         /// How much of the other light is reflected.
         kd: Vec3,
@@ -151,14 +141,24 @@ records! {
 
     /// What arrives at a site that rays of others hit.
     Node {
-        /// After up to one reflection.
-        first: Vec3,
-        /// The distance of what is nearest in front of it.
-        nearest: f32,
-        /// After up to two.
-        second: Vec3,
-        /// How many of these are known.
+        /// After up to one, two, … reflections.
+        values: [Vec3; ORDERS as usize],
+        /// The weight of hits that see no node.
+        hidden: Vec3,
+        /// How many of the values are known.
         known: u32,
+        /// How many are asked for.
+        wanted: u32,
+        /// Which fan of links is its own, and one; 0 if it is not linked.
+        links: u32,
+    }
+
+    /// What a ray of a node sees.
+    NodeLink {
+        /// The node there; none where nothing is asked, or something is in the way.
+        node: u32,
+        /// The weight of what arrives there.
+        weight: Vec3,
     }
 
     /// `take_sites`: one thread per site.
@@ -197,17 +197,13 @@ records! {
         offsets: Out<u32>,
         /// Sites with their weights, place by place.
         links: Out<Link>,
-        /// The distance of what is nearest to each place; null if that of sites counts.
-        nearest: In<f32>,
-        /// The values of the sites, if so.
-        fine: In<FineLight>,
         /// Number of places, or of cells.
         count: u32,
         /// The first cell.
         first: u32,
     }
 
-    /// `cast_fans`: one warp per site; `trace_fans` and `see`: one thread per ray; `nearest_of_fans`: one thread per site.
+    /// `cast_fans`: one warp per site; `trace_fans` and `see`: one thread per ray; `level_fans`: one thread per site.
     Fans {
         /// The scene.
         scene: Scene,
@@ -219,10 +215,6 @@ records! {
         tally: Tally,
         /// The sites.
         sites: In<Site>,
-        /// The nodes that the sites are: for those whose light is known, lights are left out. Null if they are none.
-        owners: In<u32>,
-        /// All nodes.
-        nodes: In<Node>,
         /// Rays, fan by fan.
         list: Out<ListedRay>,
         /// Shares of the mean radiance by the cosine.
@@ -231,8 +223,8 @@ records! {
         hits: Out<Hit>,
         /// What they see.
         seen: Out<SeenRay>,
-        /// The distance of what is nearest to each site.
-        nearest: Out<f32>,
+        /// The level of the smallest cells that the rays of each site ask.
+        levels: Out<i32>,
         /// Number of sites.
         count: u32,
         /// The side of the square that the rays of a site form.
@@ -247,8 +239,8 @@ records! {
         spare: u32,
     }
 
-    /// `name_nodes`, `list_nodes` and `hide_nodes`: one thread per ray; `reflect`: one thread per site; `place_nodes`: one warp per node;
-    /// `sum_first` and `sum_second`: one thread per site.
+    /// `name_nodes`, `hide_nodes` and `list_nodes`: one thread per ray; `place_nodes`: one warp per node; `list_unlinked` and `sum_nodes`: one thread per
+    /// listed node; `list_seen`: one thread per link of these; `link_nodes`: one thread per site; `reflect`: one warp per site.
     Bounce {
         /// The scene.
         scene: Scene,
@@ -260,20 +252,28 @@ records! {
         nodes: Out<Node>,
         /// Their sites.
         sites: Out<Site>,
-        /// When each was listed for the last time.
-        stamps: Out<u32>,
+        /// What their rays see, fan by fan.
+        links: Out<NodeLink>,
         /// The nodes of which less is known than is asked.
         listed: Out<u32>,
         /// Their number.
         listed_count: Out<u32>,
+        /// Those that are not linked.
+        unlinked: Out<u32>,
+        /// Their number.
+        unlinked_count: Out<u32>,
+        /// The number of linked nodes before.
+        linked: u32,
         /// How many reflections are asked for.
         order: u32,
-        /// Distinguishes this list from all before.
-        stamp: u32,
-        /// The first new node.
+        /// By how many levels the cells that are asked are smaller than those that were asked at first.
+        finer: i32,
+        /// The first node: new, listed, or unlinked.
         first: u32,
-        /// How many are new.
+        /// How many there are.
         count: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// `gather_far`: one warp per site.
@@ -303,7 +303,7 @@ records! {
         /// What these gather.
         far: In<FarLight>,
         /// Result.
-        fine: Out<FineLight>,
+        fine: Out<SurfaceLight>,
         /// The sites that see no coarse one: numbers of this batch.
         alone: Out<u32>,
         /// Their number.
@@ -330,7 +330,7 @@ records! {
         /// The fine sites around places.
         lookup: Lookup,
         /// What these receive.
-        fine: In<FineLight>,
+        fine: In<SurfaceLight>,
         /// What is asked: two places per ray.
         places: Out<LightPlace>,
         /// The answers.
@@ -344,7 +344,7 @@ records! {
         /// The same as places that ask.
         asked: Out<LightPlace>,
         /// What those receive as fine sites.
-        own: In<FineLight>,
+        own: In<SurfaceLight>,
         /// What they gather as coarse ones; only if all surface points gather for themselves.
         far: In<FarLight>,
         /// The mean radiance that each surface point receives, by ray.

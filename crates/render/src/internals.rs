@@ -53,7 +53,7 @@ pub mod footprint {
 
 pub mod gathered {
     pub use crate::gathered::directions::{BINS, above, basis, bin};
-    pub use crate::gathered::saved::{SavedCells, SavedLight, SavedNode, SavedSite};
+    pub use crate::gathered::saved::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite};
 }
 
 pub mod light_mesh {

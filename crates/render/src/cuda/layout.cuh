@@ -356,12 +356,15 @@
 #define EVEN 0x1.333334p-1f
 // The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.
 #define SKY_CONE 0x1p-2f
-// What a ray hits is asked for light in a cell of this share of the distance,
-#define BOUNCE_SIZE 0x1.99999ap-2f
-// and at least twice as large as the cell that asks.
-#define BOUNCE_COARSER 1
+// What a ray hits is asked for light in a cell of this share of the distance.
+#define BOUNCE_SIZE 0x1.99999ap-3f
+// If a site is hidden, cells that are smaller by up to this many levels are asked, one after the other.
+#define BOUNCE_FINER 1
 // The rays of a site that other rays hit form a square with this side.
-#define BOUNCE_SIDE 6u
+#define BOUNCE_SIDE 8u
+// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's. After so many, a share of
+// the twelfth power of what surfaces reflect is missing: 2 % in a closed room that reflects 0.7.
+#define ORDERS 12u
 // Where sites that rays hit are looked for first, in cells around the middle of theirs; then twice as far, up to a whole cell.
 #define NODE_REACH 0x1p-3f
 // A table in which a name is not found after this many places is too full.
@@ -1145,14 +1148,14 @@ struct alignas(8) Name {
     int cell[3];
     int level;
     unsigned kind;
-    unsigned spare;
+    unsigned finer;
 };
 static_assert(sizeof(Name) == 32, "size of Name");
 static_assert(PLACE_OF(Name, key) == 0, "place of Name::key");
 static_assert(PLACE_OF(Name, cell) == 8, "place of Name::cell");
 static_assert(PLACE_OF(Name, level) == 20, "place of Name::level");
 static_assert(PLACE_OF(Name, kind) == 24, "place of Name::kind");
-static_assert(PLACE_OF(Name, spare) == 28, "place of Name::spare");
+static_assert(PLACE_OF(Name, finer) == 28, "place of Name::finer");
 
 struct alignas(8) Names {
     unsigned long long *keys;
@@ -1225,10 +1228,12 @@ static_assert(PLACE_OF(Link, weight) == 4, "place of Link::weight");
 struct alignas(4) SurfaceLight {
     Vec3 mean;
     Vec3 tilt[3];
+    Vec3 most;
 };
-static_assert(sizeof(SurfaceLight) == 48, "size of SurfaceLight");
+static_assert(sizeof(SurfaceLight) == 60, "size of SurfaceLight");
 static_assert(PLACE_OF(SurfaceLight, mean) == 0, "place of SurfaceLight::mean");
 static_assert(PLACE_OF(SurfaceLight, tilt) == 12, "place of SurfaceLight::tilt");
+static_assert(PLACE_OF(SurfaceLight, most) == 48, "place of SurfaceLight::most");
 
 struct alignas(4) Bins {
     Vec3 sums[64];
@@ -1243,24 +1248,12 @@ struct alignas(4) FarLight {
     Bins all;
     Bins beyond;
     unsigned has_near;
-    unsigned spare;
 };
-static_assert(sizeof(FarLight) == 2104, "size of FarLight");
+static_assert(sizeof(FarLight) == 2112, "size of FarLight");
 static_assert(PLACE_OF(FarLight, light) == 0, "place of FarLight::light");
-static_assert(PLACE_OF(FarLight, all) == 48, "place of FarLight::all");
-static_assert(PLACE_OF(FarLight, beyond) == 1072, "place of FarLight::beyond");
-static_assert(PLACE_OF(FarLight, has_near) == 2096, "place of FarLight::has_near");
-static_assert(PLACE_OF(FarLight, spare) == 2100, "place of FarLight::spare");
-
-struct alignas(4) FineLight {
-    SurfaceLight light;
-    float nearest;
-    unsigned spare;
-};
-static_assert(sizeof(FineLight) == 56, "size of FineLight");
-static_assert(PLACE_OF(FineLight, light) == 0, "place of FineLight::light");
-static_assert(PLACE_OF(FineLight, nearest) == 48, "place of FineLight::nearest");
-static_assert(PLACE_OF(FineLight, spare) == 52, "place of FineLight::spare");
+static_assert(PLACE_OF(FarLight, all) == 60, "place of FarLight::all");
+static_assert(PLACE_OF(FarLight, beyond) == 1084, "place of FarLight::beyond");
+static_assert(PLACE_OF(FarLight, has_near) == 2108, "place of FarLight::has_near");
 
 struct alignas(4) SeenRay {
     Vec3 position;
@@ -1283,16 +1276,26 @@ static_assert(PLACE_OF(SeenRay, kd) == 48, "place of SeenRay::kd");
 static_assert(PLACE_OF(SeenRay, spare) == 60, "place of SeenRay::spare");
 
 struct alignas(4) Node {
-    Vec3 first;
-    float nearest;
-    Vec3 second;
+    Vec3 values[12];
+    Vec3 hidden;
     unsigned known;
+    unsigned wanted;
+    unsigned links;
 };
-static_assert(sizeof(Node) == 32, "size of Node");
-static_assert(PLACE_OF(Node, first) == 0, "place of Node::first");
-static_assert(PLACE_OF(Node, nearest) == 12, "place of Node::nearest");
-static_assert(PLACE_OF(Node, second) == 16, "place of Node::second");
-static_assert(PLACE_OF(Node, known) == 28, "place of Node::known");
+static_assert(sizeof(Node) == 168, "size of Node");
+static_assert(PLACE_OF(Node, values) == 0, "place of Node::values");
+static_assert(PLACE_OF(Node, hidden) == 144, "place of Node::hidden");
+static_assert(PLACE_OF(Node, known) == 156, "place of Node::known");
+static_assert(PLACE_OF(Node, wanted) == 160, "place of Node::wanted");
+static_assert(PLACE_OF(Node, links) == 164, "place of Node::links");
+
+struct alignas(4) NodeLink {
+    unsigned node;
+    Vec3 weight;
+};
+static_assert(sizeof(NodeLink) == 16, "size of NodeLink");
+static_assert(PLACE_OF(NodeLink, node) == 0, "place of NodeLink::node");
+static_assert(PLACE_OF(NodeLink, weight) == 4, "place of NodeLink::weight");
 
 struct alignas(8) TakeSites {
     const Site *sites;
@@ -1323,22 +1326,18 @@ struct alignas(8) Lookup {
     const LightPlace *places;
     unsigned *offsets;
     Link *links;
-    const float *nearest;
-    const FineLight *fine;
     unsigned count;
     unsigned first;
 };
-static_assert(sizeof(Lookup) == 808, "size of Lookup");
+static_assert(sizeof(Lookup) == 792, "size of Lookup");
 static_assert(PLACE_OF(Lookup, scene) == 0, "place of Lookup::scene");
 static_assert(PLACE_OF(Lookup, tally) == 664, "place of Lookup::tally");
 static_assert(PLACE_OF(Lookup, table) == 672, "place of Lookup::table");
 static_assert(PLACE_OF(Lookup, places) == 760, "place of Lookup::places");
 static_assert(PLACE_OF(Lookup, offsets) == 768, "place of Lookup::offsets");
 static_assert(PLACE_OF(Lookup, links) == 776, "place of Lookup::links");
-static_assert(PLACE_OF(Lookup, nearest) == 784, "place of Lookup::nearest");
-static_assert(PLACE_OF(Lookup, fine) == 792, "place of Lookup::fine");
-static_assert(PLACE_OF(Lookup, count) == 800, "place of Lookup::count");
-static_assert(PLACE_OF(Lookup, first) == 804, "place of Lookup::first");
+static_assert(PLACE_OF(Lookup, count) == 784, "place of Lookup::count");
+static_assert(PLACE_OF(Lookup, first) == 788, "place of Lookup::first");
 
 struct alignas(8) Fans {
     Scene scene;
@@ -1346,13 +1345,11 @@ struct alignas(8) Fans {
     Sampling sampling;
     Tally tally;
     const Site *sites;
-    const unsigned *owners;
-    const Node *nodes;
     ListedRay *list;
     float *weights;
     Hit *hits;
     SeenRay *seen;
-    float *nearest;
+    int *levels;
     unsigned count;
     unsigned side;
     float reach;
@@ -1360,25 +1357,23 @@ struct alignas(8) Fans {
     unsigned lamps;
     unsigned spare;
 };
-static_assert(sizeof(Fans) == 896, "size of Fans");
+static_assert(sizeof(Fans) == 880, "size of Fans");
 static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
 static_assert(PLACE_OF(Fans, rays) == 664, "place of Fans::rays");
 static_assert(PLACE_OF(Fans, sampling) == 784, "place of Fans::sampling");
 static_assert(PLACE_OF(Fans, tally) == 800, "place of Fans::tally");
 static_assert(PLACE_OF(Fans, sites) == 808, "place of Fans::sites");
-static_assert(PLACE_OF(Fans, owners) == 816, "place of Fans::owners");
-static_assert(PLACE_OF(Fans, nodes) == 824, "place of Fans::nodes");
-static_assert(PLACE_OF(Fans, list) == 832, "place of Fans::list");
-static_assert(PLACE_OF(Fans, weights) == 840, "place of Fans::weights");
-static_assert(PLACE_OF(Fans, hits) == 848, "place of Fans::hits");
-static_assert(PLACE_OF(Fans, seen) == 856, "place of Fans::seen");
-static_assert(PLACE_OF(Fans, nearest) == 864, "place of Fans::nearest");
-static_assert(PLACE_OF(Fans, count) == 872, "place of Fans::count");
-static_assert(PLACE_OF(Fans, side) == 876, "place of Fans::side");
-static_assert(PLACE_OF(Fans, reach) == 880, "place of Fans::reach");
-static_assert(PLACE_OF(Fans, is_near) == 884, "place of Fans::is_near");
-static_assert(PLACE_OF(Fans, lamps) == 888, "place of Fans::lamps");
-static_assert(PLACE_OF(Fans, spare) == 892, "place of Fans::spare");
+static_assert(PLACE_OF(Fans, list) == 816, "place of Fans::list");
+static_assert(PLACE_OF(Fans, weights) == 824, "place of Fans::weights");
+static_assert(PLACE_OF(Fans, hits) == 832, "place of Fans::hits");
+static_assert(PLACE_OF(Fans, seen) == 840, "place of Fans::seen");
+static_assert(PLACE_OF(Fans, levels) == 848, "place of Fans::levels");
+static_assert(PLACE_OF(Fans, count) == 856, "place of Fans::count");
+static_assert(PLACE_OF(Fans, side) == 860, "place of Fans::side");
+static_assert(PLACE_OF(Fans, reach) == 864, "place of Fans::reach");
+static_assert(PLACE_OF(Fans, is_near) == 868, "place of Fans::is_near");
+static_assert(PLACE_OF(Fans, lamps) == 872, "place of Fans::lamps");
+static_assert(PLACE_OF(Fans, spare) == 876, "place of Fans::spare");
 
 struct alignas(8) Bounce {
     Scene scene;
@@ -1386,27 +1381,35 @@ struct alignas(8) Bounce {
     Names names;
     Node *nodes;
     Site *sites;
-    unsigned *stamps;
+    NodeLink *links;
     unsigned *listed;
     unsigned *listed_count;
+    unsigned *unlinked;
+    unsigned *unlinked_count;
+    unsigned linked;
     unsigned order;
-    unsigned stamp;
+    int finer;
     unsigned first;
     unsigned count;
+    unsigned spare;
 };
-static_assert(sizeof(Bounce) == 1656, "size of Bounce");
+static_assert(sizeof(Bounce) == 1664, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
 static_assert(PLACE_OF(Bounce, fans) == 664, "place of Bounce::fans");
-static_assert(PLACE_OF(Bounce, names) == 1560, "place of Bounce::names");
-static_assert(PLACE_OF(Bounce, nodes) == 1600, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, sites) == 1608, "place of Bounce::sites");
-static_assert(PLACE_OF(Bounce, stamps) == 1616, "place of Bounce::stamps");
-static_assert(PLACE_OF(Bounce, listed) == 1624, "place of Bounce::listed");
-static_assert(PLACE_OF(Bounce, listed_count) == 1632, "place of Bounce::listed_count");
-static_assert(PLACE_OF(Bounce, order) == 1640, "place of Bounce::order");
-static_assert(PLACE_OF(Bounce, stamp) == 1644, "place of Bounce::stamp");
-static_assert(PLACE_OF(Bounce, first) == 1648, "place of Bounce::first");
-static_assert(PLACE_OF(Bounce, count) == 1652, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, names) == 1544, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1584, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, sites) == 1592, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, links) == 1600, "place of Bounce::links");
+static_assert(PLACE_OF(Bounce, listed) == 1608, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1616, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, unlinked) == 1624, "place of Bounce::unlinked");
+static_assert(PLACE_OF(Bounce, unlinked_count) == 1632, "place of Bounce::unlinked_count");
+static_assert(PLACE_OF(Bounce, linked) == 1640, "place of Bounce::linked");
+static_assert(PLACE_OF(Bounce, order) == 1644, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, finer) == 1648, "place of Bounce::finer");
+static_assert(PLACE_OF(Bounce, first) == 1652, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1656, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, spare) == 1660, "place of Bounce::spare");
 
 struct alignas(8) GatherFar {
     Fans fans;
@@ -1417,20 +1420,20 @@ struct alignas(8) GatherFar {
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherFar) == 936, "size of GatherFar");
+static_assert(sizeof(GatherFar) == 920, "size of GatherFar");
 static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
-static_assert(PLACE_OF(GatherFar, far) == 896, "place of GatherFar::far");
-static_assert(PLACE_OF(GatherFar, owners) == 904, "place of GatherFar::owners");
-static_assert(PLACE_OF(GatherFar, uneven) == 912, "place of GatherFar::uneven");
-static_assert(PLACE_OF(GatherFar, uneven_count) == 920, "place of GatherFar::uneven_count");
-static_assert(PLACE_OF(GatherFar, first) == 928, "place of GatherFar::first");
-static_assert(PLACE_OF(GatherFar, before) == 932, "place of GatherFar::before");
+static_assert(PLACE_OF(GatherFar, far) == 880, "place of GatherFar::far");
+static_assert(PLACE_OF(GatherFar, owners) == 888, "place of GatherFar::owners");
+static_assert(PLACE_OF(GatherFar, uneven) == 896, "place of GatherFar::uneven");
+static_assert(PLACE_OF(GatherFar, uneven_count) == 904, "place of GatherFar::uneven_count");
+static_assert(PLACE_OF(GatherFar, first) == 912, "place of GatherFar::first");
+static_assert(PLACE_OF(GatherFar, before) == 916, "place of GatherFar::before");
 
 struct alignas(8) GatherFine {
     Fans fans;
     Lookup lookup;
     const FarLight *far;
-    FineLight *fine;
+    SurfaceLight *fine;
     unsigned *alone;
     unsigned *alone_count;
     unsigned first;
@@ -1438,31 +1441,31 @@ struct alignas(8) GatherFine {
     unsigned count;
     unsigned spare;
 };
-static_assert(sizeof(GatherFine) == 1752, "size of GatherFine");
+static_assert(sizeof(GatherFine) == 1720, "size of GatherFine");
 static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
-static_assert(PLACE_OF(GatherFine, lookup) == 896, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, far) == 1704, "place of GatherFine::far");
-static_assert(PLACE_OF(GatherFine, fine) == 1712, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, alone) == 1720, "place of GatherFine::alone");
-static_assert(PLACE_OF(GatherFine, alone_count) == 1728, "place of GatherFine::alone_count");
-static_assert(PLACE_OF(GatherFine, first) == 1736, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_alone) == 1740, "place of GatherFine::first_alone");
-static_assert(PLACE_OF(GatherFine, count) == 1744, "place of GatherFine::count");
-static_assert(PLACE_OF(GatherFine, spare) == 1748, "place of GatherFine::spare");
+static_assert(PLACE_OF(GatherFine, lookup) == 880, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, far) == 1672, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, fine) == 1680, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, alone) == 1688, "place of GatherFine::alone");
+static_assert(PLACE_OF(GatherFine, alone_count) == 1696, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, first) == 1704, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_alone) == 1708, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, count) == 1712, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1716, "place of GatherFine::spare");
 
 struct alignas(8) GatherPoints {
     Scene scene;
     Rays rays;
     const Hit *hits;
     Lookup lookup;
-    const FineLight *fine;
+    const SurfaceLight *fine;
     LightPlace *places;
     Vec3 *means;
     unsigned *alone;
     unsigned *alone_count;
     Site *sites;
     LightPlace *asked;
-    const FineLight *own;
+    const SurfaceLight *own;
     const FarLight *far;
     Vec3 *light;
     Vec3 *normals;
@@ -1480,35 +1483,35 @@ struct alignas(8) GatherPoints {
     unsigned all_alone;
     unsigned spare;
 };
-static_assert(sizeof(GatherPoints) == 1760, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1744, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
 static_assert(PLACE_OF(GatherPoints, rays) == 664, "place of GatherPoints::rays");
 static_assert(PLACE_OF(GatherPoints, hits) == 784, "place of GatherPoints::hits");
 static_assert(PLACE_OF(GatherPoints, lookup) == 792, "place of GatherPoints::lookup");
-static_assert(PLACE_OF(GatherPoints, fine) == 1600, "place of GatherPoints::fine");
-static_assert(PLACE_OF(GatherPoints, places) == 1608, "place of GatherPoints::places");
-static_assert(PLACE_OF(GatherPoints, means) == 1616, "place of GatherPoints::means");
-static_assert(PLACE_OF(GatherPoints, alone) == 1624, "place of GatherPoints::alone");
-static_assert(PLACE_OF(GatherPoints, alone_count) == 1632, "place of GatherPoints::alone_count");
-static_assert(PLACE_OF(GatherPoints, sites) == 1640, "place of GatherPoints::sites");
-static_assert(PLACE_OF(GatherPoints, asked) == 1648, "place of GatherPoints::asked");
-static_assert(PLACE_OF(GatherPoints, own) == 1656, "place of GatherPoints::own");
-static_assert(PLACE_OF(GatherPoints, far) == 1664, "place of GatherPoints::far");
-static_assert(PLACE_OF(GatherPoints, light) == 1672, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, normals) == 1680, "place of GatherPoints::normals");
-static_assert(PLACE_OF(GatherPoints, samples) == 1688, "place of GatherPoints::samples");
-static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1696, "place of GatherPoints::sampled_pixels");
-static_assert(PLACE_OF(GatherPoints, sample_count) == 1704, "place of GatherPoints::sample_count");
-static_assert(PLACE_OF(GatherPoints, first_sampled) == 1708, "place of GatherPoints::first_sampled");
-static_assert(PLACE_OF(GatherPoints, eye) == 1712, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1724, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1732, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1736, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1740, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1744, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1748, "place of GatherPoints::first_alone");
-static_assert(PLACE_OF(GatherPoints, all_alone) == 1752, "place of GatherPoints::all_alone");
-static_assert(PLACE_OF(GatherPoints, spare) == 1756, "place of GatherPoints::spare");
+static_assert(PLACE_OF(GatherPoints, fine) == 1584, "place of GatherPoints::fine");
+static_assert(PLACE_OF(GatherPoints, places) == 1592, "place of GatherPoints::places");
+static_assert(PLACE_OF(GatherPoints, means) == 1600, "place of GatherPoints::means");
+static_assert(PLACE_OF(GatherPoints, alone) == 1608, "place of GatherPoints::alone");
+static_assert(PLACE_OF(GatherPoints, alone_count) == 1616, "place of GatherPoints::alone_count");
+static_assert(PLACE_OF(GatherPoints, sites) == 1624, "place of GatherPoints::sites");
+static_assert(PLACE_OF(GatherPoints, asked) == 1632, "place of GatherPoints::asked");
+static_assert(PLACE_OF(GatherPoints, own) == 1640, "place of GatherPoints::own");
+static_assert(PLACE_OF(GatherPoints, far) == 1648, "place of GatherPoints::far");
+static_assert(PLACE_OF(GatherPoints, light) == 1656, "place of GatherPoints::light");
+static_assert(PLACE_OF(GatherPoints, normals) == 1664, "place of GatherPoints::normals");
+static_assert(PLACE_OF(GatherPoints, samples) == 1672, "place of GatherPoints::samples");
+static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1680, "place of GatherPoints::sampled_pixels");
+static_assert(PLACE_OF(GatherPoints, sample_count) == 1688, "place of GatherPoints::sample_count");
+static_assert(PLACE_OF(GatherPoints, first_sampled) == 1692, "place of GatherPoints::first_sampled");
+static_assert(PLACE_OF(GatherPoints, eye) == 1696, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1708, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1716, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1720, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1724, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1728, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1732, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, all_alone) == 1736, "place of GatherPoints::all_alone");
+static_assert(PLACE_OF(GatherPoints, spare) == 1740, "place of GatherPoints::spare");
 
 struct alignas(4) TileBox {
     Vec3 low;

@@ -4,77 +4,104 @@
 #include "gathered/lookup.cuh"
 #include "gathered/rays.cuh"
 
+#define BOUNCE_RAYS (BOUNCE_SIDE * BOUNCE_SIDE)
+
 DEVICE bool asks_node(const SeenRay &seen) { return seen.kind != SURFACE_KINDS; }
 
 DEVICE LightPlace place_of_seen(const SeenRay &seen) { return LightPlace{seen.position, seen.level, seen.normal, 1.0f}; }
 
-// Asks for the site that a ray sees.
-DEVICE void name_node(const Bounce &args, const SeenRay &seen) {
-    add_name(args.names, name_of_kind(seen.level, cell_at(seen.level, seen.position), seen.kind));
+// Whether a ray asks and has no answer yet.
+DEVICE bool is_open(const SeenRay &seen) { return asks_node(seen) && seen.node == NO_NUMBER; }
+
+// The name of the node that a ray asks: in a cell that is smaller by `finer` levels than the one that was asked at first.
+DEVICE Name name_of_seen(const SeenRay &seen, int finer) {
+    const int level = seen.level - finer;
+    return name_of_node(level, cell_at(level, seen.position), seen.kind, finer != 0);
 }
 
-// The number of the site that a ray sees.
-DEVICE unsigned node_of(const Bounce &args, const SeenRay &seen) {
-    return number_of(args.names, name_of_kind(seen.level, cell_at(seen.level, seen.position), seen.kind).key);
-}
+DEVICE bool is_somewhere(const Site &site) { return !(site.normal == splat(0.0f)); }
 
-// Lists a site, once, if less is known of it than is asked.
-DEVICE void list_node(const Bounce &args, unsigned node) {
-    if (args.nodes[node].known < args.order && atomicExch(args.stamps + node, args.stamp) != args.stamp)
-        args.listed[atomicAdd(args.listed_count, 1u)] = node;
-}
+// Asks for the node that a ray sees.
+DEVICE void name_node(const Bounce &args, const SeenRay &seen) { add_name(args.names, name_of_seen(seen, args.finer)); }
 
-// Finds the site that a ray sees, or none if something is in the way.
+// Finds the node that a ray sees, or none if something is in the way, or no surface was found.
 template <class Structure>
 DEVICE void hide_nodes(const Bounce &args, const Structure &structure) {
     unsigned ray;
-    if (!fan_ray_of_thread(args.fans, ray) || !asks_node(args.fans.seen[ray]))
+    if (!fan_ray_of_thread(args.fans, ray) || !is_open(args.fans.seen[ray]))
         return;
     SeenRay &seen = args.fans.seen[ray];
-    const unsigned node = node_of(args, seen);
+    const unsigned node = number_of(args.names, name_of_seen(seen, args.finer).key);
     const Site &site = args.sites[node];
-    const LightPlace place = place_of_seen(seen);
-    const bool hides = may_be_hidden(place, site.position, args.nodes[node].nearest) &&
-                       occluded(structure, args.fans.tally, site_segment(place, site));
-    seen.node = hides ? NO_NUMBER : node;
+    if (is_somewhere(site) && !occluded(structure, args.fans.tally, site_segment(place_of_seen(seen), site)))
+        seen.node = node;
 }
 
-// What arrives at a site after one reflection: what its rays see.
-DEVICE void find_first(const Bounce &args, unsigned site) {
-    const Fans &fans = args.fans;
-    Node &node = args.nodes[fans.owners[site]];
-    if (node.known != 0)
+// Lists a node, once, if less is known of it, or asked for, than is asked now.
+DEVICE void list_node(const Bounce &args, unsigned node, unsigned order) {
+    if (args.nodes[node].wanted < order && atomicMax(&args.nodes[node].wanted, order) < order)
+        args.listed[atomicAdd(args.listed_count, 1u)] = node;
+}
+
+// Numbers the fan of links of a listed node that has none.
+DEVICE void list_unlinked_node(const Bounce &args, unsigned number) {
+    const unsigned node = args.listed[args.first + number];
+    if (args.nodes[node].links != 0)
         return;
-    Vec3 sum = splat(0.0f);
-    for (unsigned ray = site * rays_of_fan(fans); ray < (site + 1) * rays_of_fan(fans); ++ray)
-        sum = sum + fans.weights[ray] * fans.seen[ray].radiance;
-    node.first = sum;
-    node.nearest = nearest_of_fan(fans, site);
-    node.known = 1;
+    const unsigned place = atomicAdd(args.unlinked_count, 1u);
+    args.unlinked[place] = node;
+    args.nodes[node].links = args.linked + place + 1;
 }
 
-// What arrives at a site after up to two reflections: also what arrives at those that its rays see. Their mean stands for those that are hidden.
-DEVICE void find_second(const Bounce &args, unsigned site) {
+DEVICE const NodeLink *links_of(const Bounce &args, const Node &node) { return args.links + (unsigned long long)(node.links - 1) * BOUNCE_RAYS; }
+
+// Lists what a link of a listed node leads to, if less is known of it than one reflection less.
+DEVICE void list_seen_node(const Bounce &args, unsigned long long number) {
+    const Node &node = args.nodes[args.listed[args.first + (unsigned)(number / BOUNCE_RAYS)]];
+    const unsigned seen = links_of(args, node)[number % BOUNCE_RAYS].node;
+    if (seen != NO_NUMBER)
+        list_node(args, seen, args.order - 1);
+}
+
+// Keeps what the rays of a node see. What arrives with the last reflection alone is known then.
+DEVICE void link_node(const Bounce &args, unsigned site) {
     const Fans &fans = args.fans;
-    Vec3 lit = splat(0.0f), hidden = splat(0.0f), all = splat(0.0f);
-    float count = 0.0f;
-    for (unsigned ray = site * rays_of_fan(fans); ray < (site + 1) * rays_of_fan(fans); ++ray) {
+    Node &node = args.nodes[args.unlinked[args.first + site]];
+    NodeLink *links = args.links + (unsigned long long)(args.linked + site) * BOUNCE_RAYS;
+    Vec3 first = splat(0.0f), hidden = splat(0.0f);
+    for (unsigned index = 0; index < BOUNCE_RAYS; ++index) {
+        const unsigned ray = site * BOUNCE_RAYS + index;
         const SeenRay &seen = fans.seen[ray];
-        if (!asks_node(seen))
-            continue;
+        first = first + fans.weights[ray] * seen.radiance;
         const Vec3 weight = fans.weights[ray] * seen.kd;
-        if (seen.node == NO_NUMBER) {
+        if (is_open(seen))
             hidden = hidden + weight;
+        links[index] = NodeLink{asks_node(seen) ? seen.node : NO_NUMBER, weight};
+    }
+    node.values[0] = first;
+    node.hidden = hidden;
+    node.known = max(node.known, 1u);
+}
+
+// What arrives at a listed node after one reflection more than `order`. The mean of what its rays see stands for what is hidden.
+DEVICE void sum_node(const Bounce &args, unsigned number) {
+    Node &node = args.nodes[args.listed[number]];
+    if (node.known != args.order)
+        return;
+    const NodeLink *links = links_of(args, node);
+    Vec3 lit = splat(0.0f), all = splat(0.0f);
+    float count = 0.0f;
+    for (unsigned index = 0; index < BOUNCE_RAYS; ++index) {
+        const NodeLink link = links[index];
+        if (link.node == NO_NUMBER)
             continue;
-        }
-        const Vec3 value = args.nodes[seen.node].first;
-        lit = lit + weight * value;
+        const Vec3 value = args.nodes[link.node].values[args.order - 1];
+        lit = lit + link.weight * value;
         all = all + value;
         count += 1.0f;
     }
-    Node &node = args.nodes[fans.owners[site]];
-    node.second = node.first + lit + hidden * (count > 0.0f ? all / count : splat(0.0f));
-    node.known = 2;
+    node.values[args.order] = node.values[0] + lit + node.hidden * (count > 0.0f ? all / count : splat(0.0f));
+    node.known = args.order + 1;
 }
 
 // Adds to what the rays of a site see what is reflected of light that lights do not give. One warp.
@@ -89,7 +116,7 @@ DEVICE void add_reflected(const Bounce &args, unsigned site) {
         if (first + lane < rays) {
             const SeenRay &seen = fans.seen[start + first + lane];
             sees = asks_node(seen) && seen.node != NO_NUMBER;
-            value = sees ? args.nodes[seen.node].second : value;
+            value = sees ? args.nodes[seen.node].values[ORDERS - 1] : value;
         }
         const unsigned lanes = __ballot_sync(ALL_LANES, sees);
         count += (float)__popc(lanes);
@@ -101,6 +128,6 @@ DEVICE void add_reflected(const Bounce &args, unsigned site) {
     for (unsigned ray = start + lane; ray < start + rays; ray += WARP) {
         SeenRay &seen = fans.seen[ray];
         if (asks_node(seen))
-            seen.radiance = seen.radiance + seen.kd * (seen.node == NO_NUMBER ? mean : args.nodes[seen.node].second);
+            seen.radiance = seen.radiance + seen.kd * (seen.node == NO_NUMBER ? mean : args.nodes[seen.node].values[ORDERS - 1]);
     }
 }

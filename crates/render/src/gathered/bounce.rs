@@ -1,33 +1,38 @@
 //! Light that was reflected several times: what reaches the points that gather rays hit.
 //!
-//! A coarse cell and the kind of surface that a ray hits in it name one site, which gathers by a few rays of its own. What these hit is asked
-//! in the same way. So light after any number of reflections is a sum over links:
+//! A coarse cell and the kind of surface that a ray hits in it name one site, a *node*, which gathers by a fan of its own. What its rays hit is
+//! asked in the same way. So light after any number of reflections is a sum over links:
 //!
 //! ```text
 //! A_1(k) = Σ_j ω_j S_j        A_n(k) = Σ_j ω_j (S_j + k_d,j A_(n−1)(j))
 //! ```
 //!
-//! over the rays j of site k. S_j is what is seen without other reflections. If something is between a hit and the site of its cell, such as a wall
-//! that stands on a floor, the mean of what the other hits receive stands for it: so nothing leaks.
+//! over the rays j of node k. S_j is what is seen without other reflections. If something is between a hit and the site of its cell, such as a wall
+//! that stands on a floor, a smaller cell around the hit is asked, and then one smaller still; at last the mean of what the other hits receive
+//! stands for it: so nothing leaks.
+//!
+//! A node is linked once, whatever is asked of it. It keeps the light after each number of reflections: so what is known of it depends neither on who
+//! asked for it nor on what was asked before. Twin: `bounce.cuh`.
 
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 use glam::Vec3;
-use lightmesh_layout::constants::BOUNCE_SIDE;
+use lightmesh_layout::constants::{BOUNCE_FINER, BOUNCE_SIDE, ORDERS as MOST_ORDERS};
 use rayon::prelude::*;
 
 use super::cells::{Asked, CellHasher, Site, nearest_of_kind};
 use super::rays::{Fan, Seen, Spot};
+use super::saved::{KIND_BITS, NAME_BITS};
 use super::scene::Scene;
 use crate::stages::primary_rays::cpu::batch;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
-pub(crate) const ORDERS: usize = 2;
-/// The rays of a site.
+pub(crate) const ORDERS: usize = MOST_ORDERS as usize;
+/// The rays of a node.
 pub(super) const FAN: Fan = Fan::new(BOUNCE_SIDE);
 
-/// The name of a site: its cell and its kind of surface.
+/// The name of a node: its cell, its kind of surface, and whether the cell is smaller than what was asked at first.
 type Name = u64;
 
 impl Spot {
@@ -36,53 +41,79 @@ impl Spot {
     }
 
     fn name(&self) -> Name {
-        self.asked().key << 4 | u64::from(self.kind)
+        self.asked().key << NAME_BITS | u64::from(self.finer != 0) << KIND_BITS | u64::from(self.kind)
+    }
+
+    /// The same in a cell of half the size, if there may be one.
+    fn finer(mut self) -> Option<Spot> {
+        self.place.level -= 1;
+        self.finer += 1;
+        (self.finer <= BOUNCE_FINER).then_some(self)
     }
 }
 
-/// What a site's rays hit.
-#[derive(Default)]
+/// What a node's rays see.
 pub(super) struct Links {
-    /// The sites there, with the weights of what they receive.
-    seen: Vec<(u32, Vec3)>,
-    /// The weight of what hits do not see of their sites.
+    /// The nodes at hits, with the weights of what they receive.
+    seen: Box<[(u32, Vec3)]>,
+    /// The weight of hits that see no node.
     hidden: Vec3,
 }
 
 /// A site, and what its rays see.
 pub(super) struct Node {
+    /// Its level is that of the smallest cells that its rays ask.
     pub(super) site: Site,
-    /// What arrives with the last reflection alone; `None` if its rays were not cast.
-    pub(super) first: Option<Vec3>,
-    /// The distance of what is nearest in front of it.
-    pub(super) nearest: f32,
-    /// What its rays hit, with their weights.
-    pub(super) hits: Vec<(Spot, Vec3)>,
-    /// The sites there, once they are needed.
-    pub(super) links: Links,
+    /// `None` if its rays were not cast.
+    links: Option<Links>,
     /// How many of the values are known: what arrives after up to one, two, … reflections.
     pub(super) known: usize,
+    /// How many are asked for.
+    wanted: usize,
     pub(super) values: [Vec3; ORDERS],
 }
 
-/// All sites so far.
+impl Node {
+    /// A node of which that much is known.
+    pub(super) fn new(site: Site, known: usize, values: [Vec3; ORDERS]) -> Node {
+        Node { site, links: None, known, wanted: known, values }
+    }
+
+    /// Nothing arrives where no surface was found; all is known of that.
+    fn placed(site: Option<Site>) -> Node {
+        Node::new(site.unwrap_or_default(), if site.is_some() { 0 } else { ORDERS }, [Vec3::ZERO; ORDERS])
+    }
+
+    fn is_somewhere(&self) -> bool {
+        self.site.point.normal != Vec3::ZERO
+    }
+}
+
+/// All nodes so far.
 #[derive(Default)]
 pub(super) struct Bounce {
     pub(super) numbers: HashMap<Name, u32, BuildHasherDefault<CellHasher>>,
     pub(super) nodes: Vec<Node>,
-    pub(super) hits: usize,
+    /// Links of all of them.
+    links: usize,
 }
 
 impl Bounce {
+    /// Nodes that were known before, none of which is linked.
+    pub(super) fn with_nodes(numbers: impl Iterator<Item = (Name, u32)>, nodes: Vec<Node>) -> Bounce {
+        Bounce { numbers: numbers.collect(), nodes, links: 0 }
+    }
+
     /// Bytes in memory.
     pub(super) fn memory(&self) -> usize {
-        let of_hits = self.hits * (size_of::<(Spot, Vec3)>() + size_of::<(u32, Vec3)>());
-        self.numbers.capacity() * size_of::<(Name, u32)>() + self.nodes.capacity() * size_of::<Node>() + of_hits
+        let links = self.links * size_of::<(u32, Vec3)>();
+        self.numbers.capacity() * size_of::<(Name, u32)>() + self.nodes.capacity() * size_of::<Node>() + links
     }
 
     /// Adds to what the rays of fans see what is reflected of light that lights do not give.
     pub(super) fn complete(&mut self, scene: &Scene, seen: &[Seen], fan: Fan) -> Vec<Vec3> {
-        let numbers = self.resolve(scene, seen, |seen| seen.spot.as_ref(), ORDERS);
+        let numbers = self.resolve(scene, seen, |seen| seen.spot.as_ref());
+        self.ensure(scene, &numbers);
         let mut radiance = vec![Vec3::ZERO; seen.len()];
         let fans = seen.par_chunks_exact(fan.len()).zip(numbers.par_chunks_exact(fan.len()));
         radiance.par_chunks_exact_mut(fan.len()).zip(fans).for_each(|(radiance, (seen, numbers))| {
@@ -98,161 +129,158 @@ impl Bounce {
         radiance
     }
 
-    /// The numbers of the sites that the spots of rays see; what arrives there after up to `order` reflections is known. `None` without a spot,
-    /// and where something is in the way.
+    /// The numbers of the nodes that the spots of rays see; they are added where they are new. `None` without a spot, and where something is in the
+    /// way to all that are asked.
     fn resolve<T: Sync>(
         &mut self,
         scene: &Scene,
         rays: &[T],
         spot: impl Fn(&T) -> Option<&Spot> + Sync,
-        order: usize,
     ) -> Vec<Option<u32>> {
-        self.ensure(scene, rays.par_iter().filter_map(&spot), order);
         let mut numbers = vec![None; rays.len()];
-        let batch = batch(rays.len());
-        rays.par_chunks(batch).zip(numbers.par_chunks_mut(batch)).for_each(|(rays, numbers)| {
-            let (mut segments, mut owners) = (Vec::new(), Vec::new());
-            for (index, (ray, number)) in rays.iter().zip(&mut *numbers).enumerate() {
-                let Some(spot) = spot(ray) else { continue };
-                let found = self.numbers[&spot.name()];
-                let node = &self.nodes[found as usize];
-                *number = Some(found);
-                if spot.place.may_be_hidden(&node.site.point, node.nearest) {
-                    segments.push(spot.place.segment(&node.site.point));
-                    owners.push(index);
-                }
+        let spots = rays.par_iter().enumerate();
+        let mut asking: Vec<(u32, Spot)> = spots.filter_map(|(ray, seen)| Some((ray as u32, *spot(seen)?))).collect();
+        while !asking.is_empty() {
+            self.admit(scene, &asking);
+            let found: Vec<Option<u32>> =
+                asking.par_chunks(batch(asking.len())).flat_map_iter(|asking| self.seen_by(scene, asking)).collect();
+            for (&(ray, _), number) in asking.iter().zip(&found) {
+                numbers[ray as usize] = *number;
             }
-            let mut hidden = vec![false; segments.len()];
-            scene.scene.geometry.accelerator.occluded(&segments, &mut hidden);
-            owners.into_iter().zip(hidden).filter(|(_, hidden)| *hidden).for_each(|(index, _)| numbers[index] = None);
-        });
+            let again = asking.into_par_iter().zip(found).filter(|(_, number)| number.is_none());
+            asking = again.filter_map(|((ray, spot), _)| Some((ray, spot.finer()?))).collect();
+        }
         numbers
     }
 
-    /// What arrives at sites after up to `order` reflections is known afterwards.
-    fn ensure<'s>(&mut self, scene: &Scene, spots: impl ParallelIterator<Item = &'s Spot>, order: usize) {
-        // 1. The sites of which it is not.
-        let is_lacking =
-            |name: &Name| self.numbers.get(name).is_none_or(|&number| self.nodes[number as usize].known < order);
-        let named = spots.map(|spot| (spot.name(), spot));
-        let mut new: Vec<(Name, &Spot)> = named.filter(|(name, _)| is_lacking(name)).collect();
-        if new.is_empty() {
-            return;
+    /// The numbers of the nodes that spots ask, which are there; `None` where something is in the way, or no surface was found.
+    fn seen_by(&self, scene: &Scene, asking: &[(u32, Spot)]) -> Vec<Option<u32>> {
+        let mut numbers: Vec<Option<u32>> = asking.iter().map(|(_, spot)| Some(self.numbers[&spot.name()])).collect();
+        let (mut segments, mut owners) = (Vec::new(), Vec::new());
+        for (index, ((_, spot), number)) in asking.iter().zip(&mut numbers).enumerate() {
+            let node = number.map(|number| &self.nodes[number as usize]).filter(|node| node.is_somewhere());
+            match node {
+                Some(node) => {
+                    segments.push(spot.place.segment(&node.site.point));
+                    owners.push(index);
+                }
+                None => *number = None,
+            }
         }
+        let mut hidden = vec![false; segments.len()];
+        scene.scene.geometry.accelerator.occluded(&segments, &mut hidden);
+        owners.into_iter().zip(hidden).filter(|(_, hidden)| *hidden).for_each(|(index, _)| numbers[index] = None);
+        numbers
+    }
+
+    /// Adds the nodes that spots ask where they are new.
+    fn admit(&mut self, scene: &Scene, asking: &[(u32, Spot)]) {
+        let named = asking.par_iter().map(|(_, spot)| (spot.name(), spot));
+        let mut new: Vec<(Name, &Spot)> = named.filter(|(name, _)| !self.numbers.contains_key(name)).collect();
         new.par_sort_unstable_by_key(|(name, _)| *name);
         new.dedup_by_key(|(name, _)| *name);
-        self.admit(scene, &new);
-        let sites: Vec<u32> = new.iter().map(|(name, _)| self.numbers[name]).collect();
-        self.cast(scene, &sites);
-        // 2. What arrives at those that their rays hit, after one reflection less.
-        if order > 1 {
-            self.link(scene, &sites, order - 1);
+        let find = |new: &[(Name, &Spot)]| {
+            let mut triangles = Vec::new();
+            let site = |(_, spot): &(Name, &Spot)| {
+                let site = nearest_of_kind(scene.scene, &spot.asked(), spot.kind, &mut triangles)?;
+                Some(Site { level: asking_level(site.level, spot.finer != 0), ..site })
+            };
+            new.iter().map(site).collect::<Vec<_>>()
+        };
+        let sites: Vec<Option<Site>> = new.par_chunks(64).flat_map_iter(find).collect();
+        for ((name, _), site) in new.iter().zip(sites) {
+            self.numbers.insert(*name, self.nodes.len() as u32);
+            self.nodes.push(Node::placed(site));
         }
-        // 3. The sums.
-        for before in 0..order {
-            let lacking = sites.par_iter().filter(|&&site| self.nodes[site as usize].known == before);
-            let sums: Vec<(u32, Vec3)> = lacking.map(|&site| (site, self.sum(site, before))).collect();
-            for (site, sum) in sums {
-                let node = &mut self.nodes[site as usize];
+    }
+
+    /// All that arrives at nodes is known afterwards.
+    fn ensure(&mut self, scene: &Scene, asked: &[Option<u32>]) {
+        // 1. From reflection to reflection back, the nodes of which more is asked than is known. Each is listed with the highest number first.
+        let (mut lacking, mut ends) = (Vec::new(), [0; ORDERS]);
+        let mut frontier = self.lacking(asked.par_iter().copied().flatten(), ORDERS);
+        for order in (1..=ORDERS).rev() {
+            frontier.iter().for_each(|&node| self.nodes[node as usize].wanted = order);
+            self.link(scene, &frontier);
+            let seen = frontier.par_iter().flat_map_iter(|&node| self.links_of(node).seen.iter());
+            let next = self.lacking(seen.map(|(number, _)| *number), order - 1);
+            lacking.append(&mut frontier);
+            ends[order - 1] = lacking.len();
+            frontier = next;
+        }
+        // 2. The sums.
+        for (before, &end) in ends.iter().enumerate().skip(1) {
+            let is_lacking = |&&node: &&u32| self.nodes[node as usize].known == before;
+            let sums: Vec<(u32, Vec3)> =
+                lacking[..end].par_iter().filter(is_lacking).map(|&node| (node, self.sum(node, before))).collect();
+            for (node, sum) in sums {
+                let node = &mut self.nodes[node as usize];
                 node.values[before] = sum;
                 node.known = before + 1;
             }
         }
     }
 
-    /// Finds the sites that the rays of sites hit, of which as many reflections are known afterwards.
-    fn link(&mut self, scene: &Scene, sites: &[u32], order: usize) {
-        for sites in sites.chunks(scene.fans_at_once(FAN)) {
-            let of = |site: u32| &self.nodes[site as usize].hits;
-            let lengths: Vec<usize> = sites.iter().map(|&site| of(site).len()).collect();
-            let hits: Vec<(Spot, Vec3)> = sites.par_iter().flat_map_iter(|&site| of(site).iter().copied()).collect();
-            let numbers = self.resolve(scene, &hits, |(spot, _)| Some(spot), order);
-            let link = |(hits, numbers): (&[(Spot, Vec3)], &[Option<u32>])| {
-                let mut links = Links { seen: Vec::with_capacity(hits.len()), hidden: Vec3::ZERO };
-                for (&(_, weight), number) in hits.iter().zip(numbers) {
-                    match *number {
-                        Some(number) => links.seen.push((number, weight)),
-                        None => links.hidden += weight,
-                    }
-                }
-                links
-            };
-            let links: Vec<Links> =
-                parts(&hits, &lengths).into_par_iter().zip(parts(&numbers, &lengths)).map(link).collect();
-            sites.iter().zip(links).for_each(|(&site, links)| self.nodes[site as usize].links = links);
+    /// Those of the nodes of which less is known, or asked for, than the light after up to `order` reflections.
+    fn lacking(&self, nodes: impl ParallelIterator<Item = u32>, order: usize) -> Vec<u32> {
+        let mut lacking: Vec<u32> = nodes.filter(|&node| self.nodes[node as usize].wanted < order).collect();
+        lacking.par_sort_unstable();
+        lacking.dedup();
+        lacking
+    }
+
+    fn links_of(&self, node: u32) -> &Links {
+        self.nodes[node as usize].links.as_ref().expect("it was linked")
+    }
+
+    /// Casts the rays of nodes and finds the nodes that they see, unless it was done.
+    fn link(&mut self, scene: &Scene, nodes: &[u32]) {
+        let new: Vec<u32> = nodes.iter().copied().filter(|&node| self.nodes[node as usize].links.is_none()).collect();
+        for new in new.chunks(scene.fans_at_once(FAN)) {
+            let of = |&node: &u32| (&self.nodes[node as usize].site, f32::INFINITY);
+            let cast = scene.cast(new.iter().map(of), FAN);
+            let seen = scene.seen(&cast);
+            let numbers = self.resolve(scene, &seen, |seen| seen.spot.as_ref());
+            let fans = seen.par_chunks_exact(FAN.len()).zip(numbers.par_chunks_exact(FAN.len()));
+            let links = fans.zip(cast.weights.par_chunks_exact(FAN.len()));
+            let links: Vec<(Vec3, Links)> =
+                links.map(|((seen, numbers), weights)| linked(seen, numbers, weights)).collect();
+            for (&node, (first, links)) in new.iter().zip(links) {
+                self.links += links.seen.len();
+                let node = &mut self.nodes[node as usize];
+                (node.values[0], node.links, node.known) = (first, Some(links), node.known.max(1));
+            }
         }
     }
 
-    /// What arrives at a site after one reflection more than `before`.
-    fn sum(&self, site: u32, before: usize) -> Vec3 {
-        let node = &self.nodes[site as usize];
-        let first = node.first.unwrap_or_default();
-        if before == 0 {
-            return first;
-        }
-        let Links { seen, hidden } = &node.links;
+    /// What arrives at a node after one reflection more than `before`.
+    fn sum(&self, node: u32, before: usize) -> Vec3 {
+        let Links { seen, hidden } = self.links_of(node);
+        let first = self.nodes[node as usize].values[0];
         let value = |number: u32| self.nodes[number as usize].values[before - 1];
         let lit: Vec3 = seen.iter().map(|&(number, weight)| weight * value(number)).sum();
         first + lit + *hidden * mean(seen.iter().map(|&(number, _)| value(number)))
     }
-
-    /// Adds sites where they are new. Their names ascend.
-    fn admit(&mut self, scene: &Scene, asked: &[(Name, &Spot)]) {
-        let is_new = |(name, _): &&(Name, &Spot)| !self.numbers.contains_key(name);
-        let new: Vec<(Name, &Spot)> = asked.iter().filter(is_new).copied().collect();
-        let find = |new: &[(Name, &Spot)]| {
-            let mut triangles = Vec::new();
-            let site =
-                |(_, spot): &(Name, &Spot)| nearest_of_kind(scene.scene, &spot.asked(), spot.kind, &mut triangles);
-            new.iter().map(site).collect::<Vec<_>>()
-        };
-        let sites: Vec<Option<Site>> = new.par_chunks(64).flat_map_iter(find).collect();
-        for ((name, _), site) in new.iter().zip(sites) {
-            self.numbers.insert(*name, self.nodes.len() as u32);
-            // Nothing arrives where rounding hides the surface that was hit.
-            let first = if site.is_some() { None } else { Some(Vec3::ZERO) };
-            self.nodes.push(Node {
-                site: site.unwrap_or_default(),
-                first,
-                nearest: f32::INFINITY,
-                hits: Vec::new(),
-                links: Links::default(),
-                known: 0,
-                values: [Vec3::ZERO; ORDERS],
-            });
-        }
-    }
-
-    /// Casts the rays of sites, if they have not been cast.
-    fn cast(&mut self, scene: &Scene, sites: &[u32]) {
-        let sites: Vec<u32> = sites.iter().copied().filter(|&site| self.nodes[site as usize].first.is_none()).collect();
-        for sites in sites.chunks(scene.fans_at_once(FAN)) {
-            let of = |&site: &u32| (&self.nodes[site as usize].site, f32::INFINITY);
-            let cast = scene.cast(sites.iter().map(of), FAN);
-            let seen = scene.seen(&cast);
-            let found: Vec<(Vec3, Vec<(Spot, Vec3)>)> = seen
-                .par_chunks_exact(FAN.len())
-                .zip(cast.weights.par_chunks_exact(FAN.len()))
-                .map(|(seen, weights)| {
-                    let rays = || seen.iter().zip(weights);
-                    let first: Vec3 = rays().map(|(seen, &weight)| weight * seen.radiance).sum();
-                    let hits = rays().filter_map(|(seen, &weight)| Some((seen.spot?, weight * seen.kd)));
-                    (first, hits.collect())
-                })
-                .collect();
-            for ((&site, (first, hits)), nearest) in sites.iter().zip(found).zip(cast.nearest()) {
-                self.hits += hits.capacity();
-                let node = &mut self.nodes[site as usize];
-                (node.first, node.nearest, node.hits) = (Some(first), nearest, hits);
-            }
-        }
-    }
 }
 
-/// Consecutive parts of some lengths.
-fn parts<'a, T>(mut all: &'a [T], lengths: &[usize]) -> Vec<&'a [T]> {
-    let part = |&length: &usize| all.split_off(..length).expect("there are as many as all parts have");
-    lengths.iter().map(part).collect()
+/// The level of the smallest cells that a node's rays ask: its own, or what was asked at first, which was no larger, so that cells do not become
+/// smaller from reflection to reflection.
+pub(super) fn asking_level(level: i32, is_finer: bool) -> i32 {
+    if is_finer { level + BOUNCE_FINER } else { level }
+}
+
+/// What arrives at a node with the last reflection alone, and what its rays see.
+fn linked(seen: &[Seen], numbers: &[Option<u32>], weights: &[f32]) -> (Vec3, Links) {
+    let (mut first, mut hidden, mut links) = (Vec3::ZERO, Vec3::ZERO, Vec::with_capacity(seen.len()));
+    for ((seen, number), &weight) in seen.iter().zip(numbers).zip(weights) {
+        first += weight * seen.radiance;
+        match (seen.spot, *number) {
+            (Some(_), Some(number)) => links.push((number, weight * seen.kd)),
+            (Some(_), None) => hidden += weight * seen.kd,
+            (None, _) => {}
+        }
+    }
+    (first, Links { seen: links.into(), hidden })
 }
 
 /// The mean; zero of nothing.

@@ -44,10 +44,13 @@ DEVICE unsigned long long cell_key(int level, IVec3 cell) {
 // A cell among names.
 DEVICE Name name_of_cell(int level, IVec3 cell) { return Name{cell_key(level, cell), {cell.x, cell.y, cell.z}, level, 0, 0}; }
 
-// One kind of surface in a cell among names.
-DEVICE Name name_of_kind(int level, IVec3 cell, unsigned kind) {
-    return Name{cell_key(level, cell) << 4 | kind, {cell.x, cell.y, cell.z}, level, kind, 0};
+// One kind of surface in a cell among names, and whether the cell is smaller than what was asked at first.
+DEVICE Name name_of_node(int level, IVec3 cell, unsigned kind, bool finer) {
+    return Name{cell_key(level, cell) << 5 | (finer ? 16 : 0) | kind, {cell.x, cell.y, cell.z}, level, kind, finer ? 1u : 0u};
 }
+
+// The level of the smallest cells that a node's rays ask: its own, or what was asked at first, which was no larger.
+DEVICE int asking_level(const Name &name) { return name.level + (name.finer ? BOUNCE_FINER : 0); }
 
 DEVICE IVec3 cell_of_name(const Name &name) { return IVec3{name.cell[0], name.cell[1], name.cell[2]}; }
 

@@ -56,6 +56,7 @@ DEVICE void far_of_site(const GatherFar &args, unsigned number) {
         take_light(light, site.normal, direction, weight * radiance);
         const unsigned bin = direction_bin(direction);
         take_bin(all, bin, radiance);
+        light.most = max(light.most, radiance);
         if (load_hit(fans.hits, ray).t < near)
             has_near = true;
         else

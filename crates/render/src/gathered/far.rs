@@ -21,6 +21,8 @@ pub(super) struct Far {
 }
 
 impl Far {
+    const EMPTY: Far = Far { light: Light::NONE, all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false };
+
     /// Adds what other rays see; the numbers of rays of both are given.
     fn join(&mut self, other: &Far, [count, others]: [f32; 2]) {
         let share = others / (count + others);
@@ -106,11 +108,12 @@ fn seen_by_fans(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) ->
     let Cast { list, hits, weights, .. } = &cast;
     let gather = |(index, site): (usize, &Site)| {
         let near = near(site);
-        let mut far = Box::new(Far { light: Light::default(), all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false });
+        let mut far = Box::new(Far::EMPTY);
         let mut luminance = [0.0; 2];
         for ray in index * fan.len()..(index + 1) * fan.len() {
             let (direction, radiance, weight) = (list.rays[ray].direction, radiance[ray], weights[ray]);
             far.light.take(site.point.normal, direction, weight * radiance);
+            far.light.most = far.light.most.max(radiance);
             far.all.take(direction, radiance);
             if hits[ray].t < near {
                 far.has_near = true;

@@ -8,6 +8,15 @@
 // What a coarse site gathers.
 DEVICE const FarLight &far_of(const GatherFine &args, const Link &link) { return args.far[args.lookup.table.values[link.site] - 1]; }
 
+// Adds the mean of the rays of a bin, if there are any: with their sum, sites with many rays would count more here than in the light that is corrected.
+DEVICE void add_bin(const Bins &bins, unsigned bin, float weight, Vec3 &sum, float &weights) {
+    const float count = bins.counts[bin];
+    if (count > 0.0f) {
+        sum = sum + weight * (bins.sums[bin] / count);
+        weights += weight;
+    }
+}
+
 // What coarse sites see in a direction: radiance all along, and what is beyond near things; `mean` without any.
 DEVICE void seen_along(const GatherFine &args, unsigned place, unsigned bin, Vec3 mean, Vec3 &all, Vec3 &beyond) {
     Vec3 all_sum = splat(0.0f), beyond_sum = splat(0.0f);
@@ -17,10 +26,8 @@ DEVICE void seen_along(const GatherFine &args, unsigned place, unsigned bin, Vec
         if (link.weight <= 0.0f)
             continue;
         const FarLight &far = far_of(args, link);
-        all_sum = all_sum + link.weight * far.all.sums[bin];
-        all_weight += link.weight * far.all.counts[bin];
-        beyond_sum = beyond_sum + link.weight * far.beyond.sums[bin];
-        beyond_weight += link.weight * far.beyond.counts[bin];
+        add_bin(far.all, bin, link.weight, all_sum, all_weight);
+        add_bin(far.beyond, bin, link.weight, beyond_sum, beyond_weight);
     }
     all = all_weight > 0.0f ? all_sum / all_weight : mean;
     beyond = beyond_weight > 0.0f ? beyond_sum / beyond_weight : all;
@@ -55,22 +62,24 @@ DEVICE void fine_of_site(const GatherFine &args, unsigned number) {
         has_near = has_near || load_hit(fans.hits, ray).triangle != Hit::NONE;
     const Vec3 mean = light.mean;
     for (unsigned first = 0; total > 0.0f && has_near && first < rays; first += WARP) {
-        Vec3 direction = {}, weighted = {};
+        Vec3 direction = {}, weighted = {}, seen = {};
         if (first + lane < rays) {
             const unsigned ray = start + first + lane;
             direction = load_listed(fans.list + ray, 1);
             Vec3 all, beyond;
             seen_along(args, number, direction_bin(direction), mean, all, beyond);
             const bool hits = load_hit(fans.hits, ray).triangle != Hit::NONE;
-            weighted = fans.weights[ray] * ((hits ? fans.seen[ray].radiance : beyond) - all);
+            seen = hits ? fans.seen[ray].radiance : beyond;
+            weighted = fans.weights[ray] * (seen - all);
         }
         // In the order of the rays.
         for (unsigned ray = 0; ray < WARP && first + ray < rays; ++ray)
             take_light(light, site.normal, warp_broadcast(direction, ray), warp_broadcast(weighted, ray));
+        light.most = max(light.most, Vec3{warp_max(seen.x), warp_max(seen.y), warp_max(seen.z)});
     }
     if (lane != 0)
         return;
-    args.fine[args.first + number] = FineLight{light, fans.nearest[number], 0};
+    args.fine[args.first + number] = light;
     if (!(total > 0.0f))
         args.alone[atomicAdd(args.alone_count, 1u)] = number;
 }

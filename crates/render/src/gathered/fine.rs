@@ -21,14 +21,6 @@ use super::rays::{Cast, Fans};
 use super::scene::Scene;
 use crate::accel::Hit;
 
-/// What a fine site receives.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Fine {
-    pub(super) light: Light,
-    /// The distance of what is nearest in front of it.
-    pub(super) nearest: f32,
-}
-
 /// What coarse sites know.
 pub(super) struct Coarse<'a> {
     pub(super) cells: &'a mut Cells,
@@ -40,7 +32,7 @@ pub(super) struct Coarse<'a> {
 pub(super) fn ensure(
     scene: &Scene,
     cells: &Cells,
-    known: &mut Vec<Option<Fine>>,
+    known: &mut Vec<Option<Light>>,
     coarse: &mut Coarse,
     wanted: &[u32],
     fans: &Fans,
@@ -59,22 +51,19 @@ pub(super) fn ensure(
 
 /// What sites receive that belong to no cell, as coarse as what they ask.
 pub(super) fn plain(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> Vec<Light> {
-    let each = |sites: &[Site]| -> Vec<Light> {
-        received(scene, coarse, sites, fans).into_iter().map(|fine| fine.light).collect()
-    };
+    let each = |sites: &[Site]| received(scene, coarse, sites, fans);
     sites.chunks(scene.fans_at_once(fans.near)).flat_map(each).collect()
 }
 
-fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> Vec<Fine> {
+fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> Vec<Light> {
     let fan = fans.near;
     // 1. What is near.
     let cast = scene.cast(sites.iter().map(|site| (site, NEAR_REACH * far::near(site))), fan);
-    let nearest = cast.nearest();
 
     // 2. The coarse sites around that are seen, and what they gather.
     let places: Vec<Place> = sites.iter().map(|site| Place::new(&site.point, site.level)).collect();
     let mut links = Links::new(scene, coarse.cells, &places);
-    links.settle(scene, coarse.cells, &places, |place, _| nearest[place]);
+    links.settle(scene, coarse.cells, &places);
     far::ensure(scene, coarse.cells, coarse.bounce, coarse.known, &links.sites(), fans.far);
 
     // 3. What near rays see.
@@ -88,15 +77,13 @@ fn received(scene: &Scene, coarse: &mut Coarse, sites: &[Site], fans: &Fans) -> 
     let coarse = &*coarse;
     let both = |site: usize| {
         let rays = site * fan.len()..(site + 1) * fan.len();
-        let light = if sees(site) {
-            near_and_far(coarse, sites[site].point.normal, links.of(site), &cast, &near, rays)
-        } else {
-            Light::default()
-        };
-        Fine { light, nearest: nearest[site] }
+        if !sees(site) {
+            return Light::default();
+        }
+        near_and_far(coarse, sites[site].point.normal, links.of(site), &cast, &near, rays)
     };
-    let mut fine: Vec<Fine> = (0..sites.len()).into_par_iter().map(both).collect();
-    alone.iter().zip(own).for_each(|(&site, light)| fine[site].light = light);
+    let mut fine: Vec<Light> = (0..sites.len()).into_par_iter().map(both).collect();
+    alone.iter().zip(own).for_each(|(&site, light)| fine[site] = light);
     fine
 }
 
@@ -111,7 +98,7 @@ fn near_and_far(
 ) -> Light {
     let far = |site: u32| coarse.known[site as usize].as_ref().expect("it was ensured");
     let total: f32 = links.clone().map(|(_, weight)| weight).sum();
-    let mut light = Light::default();
+    let mut light = Light::NONE;
     let mut has_near = cast.hits[rays.clone()].iter().any(Hit::is_some);
     for (site, weight) in links.clone() {
         light.add(weight / total, &far(site).light, normal - coarse.cells.sites[site as usize].point.normal);
@@ -132,6 +119,7 @@ fn near_and_far(
         }
         let all = all.or(mean);
         let seen = if cast.hits[ray].is_some() { near[ray] } else { beyond.or(all) };
+        light.most = light.most.max(seen);
         light.take(normal, direction, cast.weights[ray] * (seen - all));
     }
     light
@@ -147,8 +135,11 @@ struct Mean {
 impl Mean {
     #[inline(always)]
     fn add(&mut self, weight: f32, (sum, count): (Vec3, f32)) {
-        self.sum += weight * sum;
-        self.weight += weight * count;
+        // By the mean of the rays: with their sum, sites with many rays would count more here than in the light that is corrected.
+        if count > 0.0 {
+            self.sum += weight * (sum / count);
+            self.weight += weight;
+        }
     }
 
     /// The mean, or something else without any.

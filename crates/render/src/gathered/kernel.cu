@@ -78,36 +78,48 @@ KERNEL(cast_fans, Fans, BLOCK, 4) {
         cast_fan(args, site);
 }
 
-KERNEL(nearest_of_fans, Fans, BLOCK, 4) {
+KERNEL(level_fans, Fans, BLOCK, 4) {
     unsigned site;
     if (thread_has_work(args.count, site))
-        args.nearest[site] = nearest_of_fan(args, site);
+        args.levels[site] = asked_level(args, site);
 }
 
 // ---- bounce.cuh ----
 
 KERNEL(name_nodes, Bounce, BLOCK, 4) {
     unsigned ray;
-    if (fan_ray_of_thread(args.fans, ray) && asks_node(args.fans.seen[ray]))
+    if (fan_ray_of_thread(args.fans, ray) && is_open(args.fans.seen[ray]))
         name_node(args, args.fans.seen[ray]);
 }
 
 KERNEL(list_nodes, Bounce, BLOCK, 4) {
     unsigned ray;
-    if (fan_ray_of_thread(args.fans, ray) && asks_node(args.fans.seen[ray]))
-        list_node(args, node_of(args, args.fans.seen[ray]));
+    if (fan_ray_of_thread(args.fans, ray) && asks_node(args.fans.seen[ray]) && !is_open(args.fans.seen[ray]))
+        list_node(args, args.fans.seen[ray].node, args.order);
 }
 
-KERNEL(sum_first, Bounce, BLOCK, 4) {
-    unsigned site;
-    if (thread_has_work(args.fans.count, site))
-        find_first(args, site);
+KERNEL(list_unlinked, Bounce, BLOCK, 4) {
+    unsigned number;
+    if (thread_has_work(args.count, number))
+        list_unlinked_node(args, number);
 }
 
-KERNEL(sum_second, Bounce, BLOCK, 4) {
+KERNEL(list_seen, Bounce, BLOCK, 4) {
+    const unsigned long long number = (unsigned long long)blockIdx.x * BLOCK + threadIdx.x;
+    if (number < (unsigned long long)args.count * BOUNCE_RAYS)
+        list_seen_node(args, number);
+}
+
+KERNEL(link_nodes, Bounce, BLOCK, 4) {
     unsigned site;
     if (thread_has_work(args.fans.count, site))
-        find_second(args, site);
+        link_node(args, site);
+}
+
+KERNEL(sum_nodes, Bounce, BLOCK, 4) {
+    unsigned number;
+    if (thread_has_work(args.count, number))
+        sum_node(args, number);
 }
 
 KERNEL(reflect, Bounce, BLOCK, 4) {
@@ -134,7 +146,7 @@ KERNEL(gather_fine, GatherFine, BLOCK, 2) {
 KERNEL(take_light, GatherFine, BLOCK, 4) {
     unsigned number;
     if (thread_has_work(args.count, number))
-        args.fine[args.first + args.alone[args.first_alone + number]].light = args.far[number].light;
+        args.fine[args.first + args.alone[args.first_alone + number]] = args.far[number].light;
 }
 
 // ---- points.cuh ----

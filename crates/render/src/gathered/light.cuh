@@ -5,7 +5,7 @@
 
 // The mean radiance on a surface whose normal differs by this.
 DEVICE Vec3 light_at(const SurfaceLight &light, Vec3 turned) {
-    return light.mean + turned.x * light.tilt[0] + turned.y * light.tilt[1] + turned.z * light.tilt[2];
+    return min(light.mean + turned.x * light.tilt[0] + turned.y * light.tilt[1] + turned.z * light.tilt[2], light.most);
 }
 
 // Adds a share of other light, on a surface whose normal differs by this.
@@ -13,6 +13,7 @@ DEVICE void add_light(SurfaceLight &light, float share, const SurfaceLight &othe
     light.mean = light.mean + share * light_at(other, turned);
     for (unsigned axis = 0; axis < 3; ++axis)
         light.tilt[axis] = light.tilt[axis] + share * other.tilt[axis];
+    light.most = max(light.most, other.most);
 }
 
 // Adds radiance that arrives along a direction, times its weight.

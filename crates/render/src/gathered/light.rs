@@ -12,13 +12,17 @@ pub(super) struct Light {
     pub(super) mean: Vec3,
     /// How it changes as the normal turns: along x, y and z.
     pub(super) tilt: [Vec3; 3],
+    /// The most radiance that comes from any direction, channel by channel: no mean is more.
+    pub(super) most: Vec3,
 }
 
 impl Light {
+    pub(super) const NONE: Light = Light { mean: Vec3::ZERO, tilt: [Vec3::ZERO; 3], most: Vec3::ZERO };
+
     /// The mean radiance on a surface whose normal differs by this.
     #[inline(always)]
     pub(super) fn at(&self, turned: Vec3) -> Vec3 {
-        self.mean + turned.x * self.tilt[0] + turned.y * self.tilt[1] + turned.z * self.tilt[2]
+        (self.mean + turned.x * self.tilt[0] + turned.y * self.tilt[1] + turned.z * self.tilt[2]).min(self.most)
     }
 
     /// Adds a share of other light, on a surface whose normal differs by this.
@@ -28,6 +32,7 @@ impl Light {
         for (sum, tilt) in self.tilt.iter_mut().zip(other.tilt) {
             *sum += share * tilt;
         }
+        self.most = self.most.max(other.most);
     }
 
     /// Adds radiance that arrives along a direction, times its weight.

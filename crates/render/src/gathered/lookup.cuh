@@ -23,11 +23,6 @@ DEVICE float site_weight(const LightPlace &place, float size, Vec3 position, Vec
     return near * near * cosine * cosine * flat * flat;
 }
 
-// Whether something may be in the way to a site, if nothing is nearer than this to one of both ends.
-DEVICE bool may_be_hidden(const LightPlace &place, Vec3 position, float nearest) {
-    return 4.0f * length_squared(position - place.position) > nearest * nearest;
-}
-
 // The segment to a site.
 DEVICE Ray site_segment(const LightPlace &place, const Site &site) {
     const float raised = SITE_RAISED * length(site.position - place.position);
@@ -188,52 +183,25 @@ DEVICE void balance(const Lookup &args, const LightPlace &place, Link *links, un
     }
 }
 
-// A link of a place that something may hide.
-struct DoubtfulLink {
-    unsigned place, link;
-};
-
-// Whether something may be in the way to the site of a link.
-DEVICE bool is_doubtful(const Lookup &args, const DoubtfulLink &asked) {
-    const unsigned site = args.links[asked.link].site;
-    const float nearest = args.nearest != nullptr ? args.nearest[asked.place] : args.fine[args.table.values[site] - 1].nearest;
-    return may_be_hidden(args.places[asked.place], args.table.sites[site].position, nearest);
-}
-
 // Takes its weight from a link if its place does not see the site.
 template <class Structure>
-DEVICE void hide_link(const Lookup &args, const Structure &structure, const DoubtfulLink &asked) {
-    const Site &site = args.table.sites[args.links[asked.link].site];
-    if (occluded(structure, args.tally, site_segment(args.places[asked.place], site)))
-        args.links[asked.link].weight = 0.0f;
+DEVICE void hide_link(const Lookup &args, const Structure &structure, unsigned place, Link &link) {
+    if (occluded(structure, args.tally, site_segment(args.places[place], args.table.sites[link.site])))
+        link.weight = 0.0f;
 }
 
-// Takes their weight from sites that a place does not see, and balances the others. The links of a warp's places follow each other: doubtful ones
-// wait until there is one for each lane.
+// Takes their weight from sites that a place does not see, and balances the others. All are tested: that nothing is near in front of a site says
+// nothing of what is behind its surface. The links of a warp's places follow each other: each lane takes one after the other.
 template <class Structure>
 DEVICE void settle_links(const Lookup &args, const Structure &structure) {
-    SHARED(DoubtfulLink, lists, [BLOCK / WARP][2 * WARP]);
-    DoubtfulLink *doubtful = lists[threadIdx.x / WARP];
     const unsigned index = blockIdx.x * BLOCK + threadIdx.x, lane = lane_of_thread();
     const unsigned begin = args.offsets[min(index, args.count)], end = args.offsets[min(index + 1, args.count)];
     const unsigned last = __shfl_sync(ALL_LANES, end, WARP - 1);
-    unsigned count = 0;
     for (unsigned from = __shfl_sync(ALL_LANES, begin, 0); from < last; from += WARP) {
-        const DoubtfulLink own = {index - lane + warp_owner(end, from + lane), from + lane};
-        const bool has = from + lane < last && is_doubtful(args, own);
-        const unsigned lanes = __ballot_sync(ALL_LANES, has);
-        if (has)
-            doubtful[count + __popc(lanes & lanes_below(lane))] = own;
-        count += __popc(lanes);
-        __syncwarp();
-        if (count < WARP)
-            continue;
-        count -= WARP;
-        hide_link(args, structure, doubtful[count + lane]);
-        __syncwarp();
+        const unsigned place = index - lane + warp_owner(end, from + lane);
+        if (from + lane < last)
+            hide_link(args, structure, place, args.links[from + lane]);
     }
-    if (lane < count)
-        hide_link(args, structure, doubtful[lane]);
     __syncwarp();
     if (index < args.count)
         balance(args, args.places[index], args.links + begin, end - begin);

@@ -50,11 +50,6 @@ impl Place {
         near * near * cosine * cosine * flat * flat
     }
 
-    /// Whether something may be in the way to a site, if nothing is nearer than this to one of both ends.
-    pub(super) fn may_be_hidden(&self, site: &SurfacePoint, nearest: f32) -> bool {
-        4.0 * (site.position - self.position).length_squared() > nearest * nearest
-    }
-
     /// The segment to a site.
     pub(super) fn segment(&self, site: &SurfacePoint) -> Ray {
         let raised = SITE_RAISED * (site.position - self.position).length();
@@ -108,25 +103,16 @@ impl Links {
         sites
     }
 
-    /// Takes their weight from sites that a place does not see, and balances the others. `near` has the distance of what is nearest to the
-    /// place, or to the site: only what is farther away can be hidden.
-    pub(super) fn settle(
-        &mut self,
-        scene: &Scene,
-        cells: &Cells,
-        places: &[Place],
-        near: impl Fn(usize, u32) -> f32 + Sync,
-    ) {
-        self.batches.par_iter_mut().zip(places.par_chunks(BATCH)).enumerate().for_each(|(number, (batch, places))| {
-            let (mut segments, mut owners) = (Vec::new(), Vec::new());
-            for (index, (place, range)) in places.iter().zip(&batch.ranges).enumerate() {
+    /// Takes their weight from sites that a place does not see, and balances the others. All are tested: that nothing is near in front of a site says
+    /// nothing of what is behind its surface.
+    pub(super) fn settle(&mut self, scene: &Scene, cells: &Cells, places: &[Place]) {
+        self.batches.par_iter_mut().zip(places.par_chunks(BATCH)).for_each(|(batch, places)| {
+            let mut segments = Vec::with_capacity(batch.links.len());
+            let mut owners = Vec::with_capacity(batch.links.len());
+            for (place, range) in places.iter().zip(&batch.ranges) {
                 for link in range.start as usize..range.end as usize {
-                    let site = batch.links[link].0;
-                    let point = &cells.sites[site as usize].point;
-                    if place.may_be_hidden(point, near(number * BATCH + index, site)) {
-                        segments.push(place.segment(point));
-                        owners.push(link);
-                    }
+                    segments.push(place.segment(&cells.sites[batch.links[link].0 as usize].point));
+                    owners.push(link);
                 }
             }
             let mut hidden = vec![false; segments.len()];

@@ -39,7 +39,7 @@ use crate::view::View;
 use bounce::Bounce;
 use cells::{Cells, Site, level_of};
 use far::Far;
-use fine::{Coarse, Fine};
+use fine::Coarse;
 use light::Light;
 use lookup::{Links, Place};
 use rays::{Fan, Fans};
@@ -84,8 +84,8 @@ impl Gathering {
     pub(crate) fn new(view: &View, bounds: &Bounds, quality: Quality, left: Option<u64>) -> Gathering {
         let (pixels, far, near) = match quality {
             Quality::Draft => (8.0, [8, 12], 4),
-            Quality::Good => (6.0, [8, 14], 6),
-            Quality::Final => (4.0, [16, 28], 8),
+            Quality::Good => (6.0, [12, 20], 6),
+            Quality::Final => (4.0, [24, 42], 8),
         };
         let fans = Fans { far: far.map(Fan::new), near: Fan::new(near) };
         let least_level = level_of(LEAST_SIZE * bounds.farthest()).0;
@@ -136,7 +136,7 @@ impl Gathering {
 #[derive(Default)]
 pub struct SurfaceLight {
     fine_cells: Cells,
-    fine: Vec<Option<Fine>>,
+    fine: Vec<Option<Light>>,
     far_cells: Cells,
     far: Vec<Option<Box<Far>>>,
     bounce: Bounce,
@@ -203,7 +203,7 @@ impl PartialEq for Sources {
 impl SurfaceLight {
     /// Bytes in memory.
     pub(crate) fn memory(&self) -> u64 {
-        let sites = self.fine.capacity() * size_of::<Option<Fine>>();
+        let sites = self.fine.capacity() * size_of::<Option<Light>>();
         let far = self.far.iter().flatten().count() * size_of::<Far>() + self.far.capacity() * size_of::<usize>();
         (self.fine_cells.memory() + sites + self.far_cells.memory() + far + self.bounce.memory()) as u64
     }
@@ -283,14 +283,14 @@ fn means(
     let mut coarse = Coarse { cells: far_cells, known: far, bounce };
     fine::ensure(scene, fine_cells, fine, &mut coarse, &links.sites(), &how.fans);
     let known = |site: u32| fine[site as usize].as_ref().expect("it was ensured");
-    links.settle(scene, fine_cells, &places, |_, site| known(site).nearest);
+    links.settle(scene, fine_cells, &places);
 
     // 3. The mean.
     let mean = |(number, ask): (usize, &Ask)| {
         let (normal, mut sum, mut weights) = (normal(ask), Vec3::ZERO, 0.0);
         for (site, weight) in links.of(number) {
             let turned = normal - fine_cells.sites[site as usize].point.normal;
-            sum += weight * known(site).light.at(turned);
+            sum += weight * known(site).at(turned);
             weights += weight;
         }
         (weights > 0.0).then(|| sum / weights)

@@ -62,7 +62,7 @@ DEVICE void find_mean(const GatherPoints &args, unsigned index) {
         const float weight = args.lookup.links[link].weight;
         if (weight <= 0.0f)
             continue;
-        const SurfaceLight &light = args.fine[args.lookup.table.values[site] - 1].light;
+        const SurfaceLight &light = args.fine[args.lookup.table.values[site] - 1];
         sum = sum + weight * light_at(light, normal - args.lookup.table.sites[site].normal);
         weights += weight;
     }
@@ -87,7 +87,7 @@ DEVICE void site_of_alone(const GatherPoints &args, unsigned index) {
 DEVICE void find_mean_alone(const GatherPoints &args, unsigned index) {
     const unsigned place = args.alone[args.first_alone + index];
     const Vec3 normal = args.places[place].normal;
-    const SurfaceLight &light = args.all_alone ? args.far[index].light : args.own[index].light;
+    const SurfaceLight &light = args.all_alone ? args.far[index].light : args.own[index];
     args.means[place] = light_at(light, normal_at(args, place, normal) - normal);
 }
 

@@ -22,9 +22,6 @@ DEVICE Vec3 fan_direction(const Fans &fans, const Site &site, unsigned index, fl
     return local.x * tangent + local.y * other + local.z * site.normal;
 }
 
-// Whether the site's rays are cast for the first time.
-DEVICE bool is_new(const Fans &fans, unsigned site) { return fans.owners == nullptr || fans.nodes[fans.owners[site]].known == 0; }
-
 // Casts a fan of rays from a site. One warp.
 DEVICE void cast_fan(const Fans &fans, unsigned number) {
     const unsigned lane = lane_of_thread(), rays = rays_of_fan(fans);
@@ -45,7 +42,7 @@ DEVICE void cast_fan(const Fans &fans, unsigned number) {
     __syncwarp();
     for (unsigned ray = lane; ray < rays; ray += WARP)
         fans.weights[start + ray] /= sum;
-    if (lane == 0 && is_new(fans, number))
+    if (lane == 0)
         atomicAdd(&tally_shard(fans.tally).gather_rays, (unsigned long long)rays);
 }
 
@@ -65,12 +62,20 @@ DEVICE void trace_fans(const Fans &fans, const Structure &structure) {
     store_hit(fans.hits, number, closest_hit(structure, fans.tally, ray));
 }
 
-// The distance of what is nearest to a site.
-DEVICE float nearest_of_fan(const Fans &fans, unsigned site) {
-    float nearest = INFINITE;
-    for (unsigned ray = 0; ray < rays_of_fan(fans); ++ray)
-        nearest = fminf(nearest, load_hit(fans.hits, site * rays_of_fan(fans) + ray).t);
-    return nearest;
+// The level of the smallest cells that the rays of a site ask for reflected light: cells become larger from reflection to reflection, up to what
+// suits a ray of mean length, so that neither corners are asked in detail everywhere nor whole rooms as one.
+DEVICE int asked_level(const Fans &fans, unsigned site) {
+    const int own = fans.sites[site].level;
+    float sum = 0.0f, count = 0.0f;
+    for (unsigned ray = site * rays_of_fan(fans); ray < (site + 1) * rays_of_fan(fans); ++ray) {
+        const Hit hit = load_hit(fans.hits, ray);
+        if (hit.triangle != Hit::NONE) {
+            sum += hit.t;
+            count += 1.0f;
+        }
+    }
+    float rest;
+    return fans.is_near || count == 0.0f ? own : max(own, min(own + 1, level_of_width(BOUNCE_SIZE * (sum / count), rest)));
 }
 
 // Adds what reaches a point from lights, as a random point of each is seen or not. Returns the number of rays that were cast.
@@ -97,6 +102,7 @@ template <class Structure>
 DEVICE SeenRay seen_by(const Fans &fans, const Structure &structure, unsigned ray, unsigned &cast) {
     SeenRay seen = {};
     seen.kind = SURFACE_KINDS;
+    seen.node = NO_NUMBER;
     const Hit hit = load_hit(fans.hits, ray);
     const Vec3 direction = ray_at(fans.rays, ray).direction;
     // A shadow catcher shows what is behind it.
@@ -113,14 +119,13 @@ DEVICE SeenRay seen_by(const Fans &fans, const Structure &structure, unsigned ra
         return seen;
     const unsigned number = ray / rays_of_fan(fans), index = ray % rays_of_fan(fans);
     const Site &site = fans.sites[number];
-    if (is_new(fans, number))
-        cast = add_lights(fans, structure, surface, site.seed + (rays_of_fan(fans) + index), seen.radiance);
+    cast = add_lights(fans, structure, surface, site.seed + (rays_of_fan(fans) + index), seen.radiance);
     const bool front = dot(outward_of(corners_at(fans.scene.triangles, hit.triangle)), direction) < 0.0f;
     float rest;
     seen.position = surface.point.position;
     seen.normal = surface.point.normal;
     seen.kd = surface.material->all;
-    seen.level = max(level_of_width(BOUNCE_SIZE * hit.t, rest), site.level + BOUNCE_COARSER);
+    seen.level = max(level_of_width(BOUNCE_SIZE * hit.t, rest), fans.levels[number]);
     seen.kind = surface_kind(surface.point.normal, front);
     return seen;
 }

@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
-use lightmesh_layout::constants::{BOUNCE_COARSER, BOUNCE_SIZE, SKY_CONE};
+use lightmesh_layout::constants::{BOUNCE_SIZE, SKY_CONE};
 use rayon::prelude::*;
 
 use super::cells::{Kind, Site, kind_of, level_of, outward};
@@ -84,16 +84,25 @@ pub(super) struct Cast {
 }
 
 impl Cast {
-    /// The distances of what is nearest to each site.
-    pub(super) fn nearest(&self) -> Vec<f32> {
-        let least = |hits: &[Hit]| hits.iter().fold(f32::INFINITY, |least, hit| least.min(hit.t));
-        self.hits.par_chunks_exact(self.fan.len()).map(least).collect()
+    /// The level of the smallest cells that the rays of each site ask for reflected light: cells become larger from reflection to reflection, up to
+    /// what suits a ray of mean length, so that neither corners are asked in detail everywhere nor whole rooms as one.
+    fn asked_levels(&self) -> Vec<i32> {
+        let level = |(fan, hits): (usize, &[Hit])| {
+            let (own, _) = self.origins[fan];
+            let (sum, count) = hits
+                .iter()
+                .filter(|hit| hit.is_some())
+                .fold((0.0, 0.0), |(sum, count), hit| (sum + hit.t, count + 1.0));
+            let is_near = self.list.rays[fan * self.fan.len()].t_max < f32::INFINITY;
+            if is_near || count == 0.0 { own } else { own.max((own + 1).min(level_of(BOUNCE_SIZE * (sum / count)).0)) }
+        };
+        self.hits.par_chunks_exact(self.fan.len()).enumerate().map(level).collect()
     }
 
-    /// The level of the site that a ray comes from, and what distinguishes its random numbers.
-    fn origin(&self, ray: usize) -> (i32, u64) {
-        let (level, seed) = self.origins[ray / self.fan.len()];
-        (level, seed.wrapping_add((self.fan.len() + ray % self.fan.len()) as u64))
+    /// What distinguishes a ray's random numbers.
+    fn seed(&self, ray: usize) -> u64 {
+        let (_, seed) = self.origins[ray / self.fan.len()];
+        seed.wrapping_add((self.fan.len() + ray % self.fan.len()) as u64)
     }
 }
 
@@ -135,13 +144,18 @@ impl Scene<'_> {
         let Scene { job, scene, .. } = *self;
         let wave = HostWave { job, scene, rays: &cast.list, hits: &cast.hits, lights: LightGroup::ALL, parts: 1 };
         let lights = Lights::new(&wave);
+        let levels = cast.asked_levels();
         let mut seen = vec![Seen::default(); cast.hits.len()];
         let size = batch(seen.len());
         seen.par_chunks_mut(size).enumerate().for_each(|(batch, seen)| {
             job.piece(0, || {
                 let mut segments = Segments::default();
                 for (place, seen) in seen.iter_mut().enumerate() {
-                    *seen = seen_by(&wave, cast, &lights, [batch * size + place, place], &mut segments);
+                    let ray = batch * size + place;
+                    *seen = seen_by(&wave, cast, &lights, [ray, place], &mut segments);
+                    if let Some(spot) = &mut seen.spot {
+                        spot.place.level = spot.place.level.max(levels[ray / cast.fan.len()]);
+                    }
                 }
                 segments.add(&wave, seen);
             });
@@ -155,6 +169,8 @@ impl Scene<'_> {
 pub(super) struct Spot {
     /// Its level is that of the cell that it asks.
     pub(super) place: Place,
+    /// By how many levels it is smaller than the one that was asked at first.
+    pub(super) finer: i32,
     pub(super) kind: Kind,
 }
 
@@ -188,12 +204,11 @@ fn seen_by(wave: &HostWave, cast: &Cast, lights: &Lights, [ray, place]: [usize; 
     if kd == Vec3::ZERO {
         return Seen { radiance, ..Seen::default() };
     }
-    let (least_level, seed) = cast.origin(ray);
-    segments.note(wave, lights, seed, place, &surface);
+    segments.note(wave, lights, cast.seed(ray), place, &surface);
     let point = &surface.point;
     let is_front = outward(&wave.scene.geometry.triangles.at(hit.triangle)).dot(direction) < 0.0;
-    let level = level_of(BOUNCE_SIZE * hit.t).0.max(least_level + BOUNCE_COARSER);
-    let spot = Spot { place: Place::new(point, level), kind: kind_of(point.normal, is_front) };
+    let level = level_of(BOUNCE_SIZE * hit.t).0;
+    let spot = Spot { place: Place::new(point, level), finer: 0, kind: kind_of(point.normal, is_front) };
     Seen { radiance, kd, spot: Some(spot) }
 }
 

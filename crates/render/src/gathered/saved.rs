@@ -7,14 +7,13 @@
 use bytemuck::Pod;
 use glam::Vec3;
 use lightmesh_layout::constants::{CELL_INDEX_BITS, LEVEL_BIAS};
-use lightmesh_layout::gathered::{Bins as BinsRecord, FarLight, FineLight, SurfaceLight as LightRecord};
+use lightmesh_layout::gathered::{Bins as BinsRecord, FarLight, SurfaceLight as LightRecord};
 
 use super::SurfaceLight;
 pub(crate) use super::bounce::ORDERS;
-use super::bounce::{Bounce, Node};
+use super::bounce::{Bounce, Node, asking_level};
 use super::cells::{CellKey, Cells, Site};
 use super::far::Far;
-use super::fine::Fine;
 use super::light::{Bins, Light};
 use crate::surface::SurfacePoint;
 
@@ -22,7 +21,7 @@ use crate::surface::SurfacePoint;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SavedLight {
     /// Light that is gathered near by.
-    pub fine: SavedCells<FineLight>,
+    pub fine: SavedCells<LightRecord>,
     /// Light that is gathered far away.
     pub far: SavedCells<FarLight>,
     /// In the order of their names.
@@ -52,30 +51,30 @@ pub struct SavedSite {
 }
 
 /// A point of the surfaces: position, where rays begin, and normal.
-pub(crate) type SavedPlace = [[f32; 3]; 3];
+pub type SavedPlace = [[f32; 3]; 3];
 
 /// What arrives at a site that rays of others hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SavedNode {
-    /// Its cell and its kind of surface.
+    /// Its cell, its kind of surface, and whether the cell is smaller than what was asked at first.
     pub name: u64,
     /// All zeros if no such surface was found.
     pub place: SavedPlace,
-    /// The distance of what is nearest in front of it.
-    pub nearest: f32,
     /// How many of the values are known.
     pub known: u8,
-    /// Light, by order of reflection.
+    /// Light after up to one, two, … reflections; zero where it is not known.
     pub values: [[f32; 3]; ORDERS],
 }
 
 /// Bits of a kind of surface in names.
-const KIND_BITS: u32 = 4;
+pub(super) const KIND_BITS: u32 = 4;
 const KIND: u64 = (1 << KIND_BITS) - 1;
-/// Cells have smaller keys than this.
-pub(crate) const END_OF_CELLS: CellKey = 1 << (3 * CELL_INDEX_BITS + u8::BITS);
+/// Bits of names of nodes that follow that of their cell: the kind, and whether the cell is smaller than what was asked at first.
+pub(super) const NAME_BITS: u32 = KIND_BITS + 1;
+/// Cells have smaller keys than this: no level has all bits.
+pub(crate) const END_OF_CELLS: CellKey = (u8::MAX as CellKey) << (3 * CELL_INDEX_BITS);
 /// Nodes have smaller names than this.
-pub(crate) const END_OF_NAMES: u64 = END_OF_CELLS << KIND_BITS;
+pub(crate) const END_OF_NAMES: u64 = END_OF_CELLS << NAME_BITS;
 
 /// The level of a cell.
 pub(super) fn level_of_key(key: CellKey) -> i32 {
@@ -135,26 +134,30 @@ impl<V> SavedCells<V> {
 }
 
 impl SavedNode {
+    /// The level of the smallest cells that it asks.
     pub(super) fn level(&self) -> i32 {
-        level_of_key(self.name >> KIND_BITS)
+        asking_level(level_of_key(self.cell()), self.is_finer())
     }
 
-    pub(super) fn kind(&self) -> u32 {
-        (self.name & KIND) as u32
+    pub(super) fn kind(&self) -> u8 {
+        (self.name & KIND) as u8
+    }
+
+    pub(super) fn is_finer(&self) -> bool {
+        self.name >> KIND_BITS & 1 != 0
     }
 
     pub(super) fn cell(&self) -> CellKey {
-        self.name >> KIND_BITS
+        self.name >> NAME_BITS
+    }
+
+    pub(super) fn seed(&self) -> u64 {
+        seed_of(self.cell(), self.kind())
     }
 
     /// Whether a surface was found.
     pub(crate) fn is_somewhere(&self) -> bool {
         self.place != SavedPlace::default()
-    }
-
-    /// All is known of nodes where no surface was found.
-    pub(super) fn completed(self) -> SavedNode {
-        if self.is_somewhere() { self } else { SavedNode { known: ORDERS as u8, ..self } }
     }
 }
 
@@ -167,7 +170,7 @@ impl SurfaceLight {
     /// All that is known.
     pub(crate) fn saved(&self) -> SavedLight {
         SavedLight {
-            fine: self.fine_cells.saved(|site| Some(FineLight::from(self.fine.get(site)?.as_ref()?))),
+            fine: self.fine_cells.saved(|site| Some(LightRecord::from(self.fine.get(site)?.as_ref()?))),
             far: self.far_cells.saved(|site| Some(FarLight::from(&**self.far.get(site)?.as_ref()?))),
             nodes: self.bounce.saved(),
         }
@@ -179,7 +182,7 @@ impl SurfaceLight {
         SurfaceLight {
             fine_cells: Cells::restored(&fine),
             far_cells: Cells::restored(&far),
-            fine: by_site(&fine, |fine| Fine::from(fine)),
+            fine: by_site(&fine, |light| Light::from(light)),
             far: by_site(&far, |far| Box::new(Far::from(far))),
             bounce: Bounce::restored(&nodes),
         }
@@ -227,28 +230,22 @@ impl Bounce {
     fn saved(&self) -> Vec<SavedNode> {
         let node = |(&name, &number): (&u64, &u32)| {
             let node = &self.nodes[number as usize];
-            let (place, known) = (place_of(&node.site.point), node.known as u8);
             let values = node.values.map(|value| value.to_array());
-            SavedNode { name, place, nearest: node.nearest, known, values }.completed()
+            SavedNode { name, place: place_of(&node.site.point), known: node.known as u8, values }
         };
         let mut nodes: Vec<SavedNode> = self.numbers.iter().map(node).filter(|node| node.known > 0).collect();
         nodes.sort_unstable_by_key(|node| node.name);
         nodes
     }
 
+    /// If more of nodes is asked, their rays are cast again.
     fn restored(saved: &[SavedNode]) -> Bounce {
-        let numbers = saved.iter().zip(0..).map(|(node, number)| (node.name, number)).collect();
-        let node = |node: &SavedNode| Node {
-            site: Site { point: point_at(node.place), level: node.level(), seed: node.name },
-            // If more of it is asked, its rays are cast again.
-            first: if node.is_somewhere() { None } else { Some(Vec3::ZERO) },
-            nearest: node.nearest,
-            hits: Vec::new(),
-            links: Default::default(),
-            known: node.known.into(),
-            values: node.values.map(Vec3::from),
+        let node = |node: &SavedNode| {
+            let site = Site { point: point_at(node.place), level: node.level(), seed: node.seed() };
+            Node::new(site, node.known.into(), node.values.map(Vec3::from))
         };
-        Bounce { numbers, nodes: saved.iter().map(node).collect(), hits: 0 }
+        let numbers = saved.iter().zip(0..).map(|(node, number)| (node.name, number));
+        Bounce::with_nodes(numbers, saved.iter().map(node).collect())
     }
 }
 
@@ -264,13 +261,13 @@ fn point_at(place: SavedPlace) -> SurfacePoint {
 impl From<&Light> for LightRecord {
     fn from(light: &Light) -> LightRecord {
         let vector = |vector: Vec3| vector.to_array().into();
-        LightRecord { mean: vector(light.mean), tilt: light.tilt.map(vector) }
+        LightRecord { mean: vector(light.mean), tilt: light.tilt.map(vector), most: vector(light.most) }
     }
 }
 
 impl From<&LightRecord> for Light {
     fn from(light: &LightRecord) -> Light {
-        Light { mean: vector_of(light.mean), tilt: light.tilt.map(vector_of) }
+        Light { mean: vector_of(light.mean), tilt: light.tilt.map(vector_of), most: vector_of(light.most) }
     }
 }
 
@@ -286,22 +283,10 @@ impl From<&BinsRecord> for Bins {
     }
 }
 
-impl From<&Fine> for FineLight {
-    fn from(fine: &Fine) -> FineLight {
-        FineLight { light: (&fine.light).into(), nearest: fine.nearest, spare: 0 }
-    }
-}
-
-impl From<&FineLight> for Fine {
-    fn from(fine: &FineLight) -> Fine {
-        Fine { light: (&fine.light).into(), nearest: fine.nearest }
-    }
-}
-
 impl From<&Far> for FarLight {
     fn from(far: &Far) -> FarLight {
         let (all, beyond) = ((&far.all).into(), (&far.beyond).into());
-        FarLight { light: (&far.light).into(), all, beyond, has_near: far.has_near.into(), spare: 0 }
+        FarLight { light: (&far.light).into(), all, beyond, has_near: far.has_near.into() }
     }
 }
 

@@ -225,7 +225,10 @@ DEVICE void place_nodes(const Bounce &args, const Structure &structure) {
         return;
     Site site = {};
     const bool has = site_of_candidates(args.scene, args.fans.tally, structure, candidates, name, name.kind, site);
+    site.level = asking_level(name);
     args.sites[node] = site;
-    // Nothing arrives where rounding hides the surface that was hit.
-    args.nodes[node] = Node{splat(0.0f), INFINITE, splat(0.0f), has ? 0u : 2u};
+    // Nothing arrives where no surface was found; all is known of that.
+    Node placed = {};
+    placed.known = placed.wanted = has ? 0u : ORDERS;
+    args.nodes[node] = placed;
 }

@@ -41,7 +41,7 @@ fn a_white_furnace_has_the_light_of_its_reflections() {
         let frame = render(&scene, &settings([48, 32]).with_quality(*quality));
         // 1 + 1/2 + 1/4 + 1/8: what is seen shines, and reflects what was reflected up to three times.
         for color in frame.color() {
-            assert!(color.iter().all(|channel| (channel - 1.875).abs() < 1e-4), "{quality:?}: {color:?}");
+            assert!(color.iter().all(|channel| (channel - 2.0).abs() < 2e-4), "{quality:?}: {color:?}");
         }
     }
 }
@@ -117,7 +117,7 @@ fn points_that_gather_for_themselves_know_the_answers_too() {
     let room = SceneDraft::new().painted(shining(0.5, 1.0)).cuboid([-2.0, -1.0, -1.5], [2.0, 1.0, 1.5]);
     let room = room.camera([0.3, 0.2, 0.1], [2.0, -0.3, 0.6]).finish("furnace");
     for color in render(&room, &by_rays([12, 8])).color() {
-        assert!(color.iter().all(|channel| (channel - 1.875).abs() < 1e-4), "{color:?}");
+        assert!(color.iter().all(|channel| (channel - 2.0).abs() < 2e-4), "{color:?}");
     }
     // At the foot of a wall, all along an image row: nothing but noise is left.
     let frame = render(&walled(), &by_rays([100, 2]).with_quality(Quality::Good).with_layers(true));

@@ -5,21 +5,21 @@
 //! | 8 | hash of all that it depends on |
 //! | | for fine cells, and for coarse ones: |
 //! | 8 | number of cells |
-//! | 1 to 9, 1 each | their keys, each as the difference from the one before, 7 bits in a byte; number of sites |
+//! | 1 to 10, 1 each | their keys, each as the difference from the one before, 7 bits in a byte; number of sites |
 //! | 1 each | the sites, cell by cell: kind of surface, plus 16 if it has a value |
 //! | 36 each | position, where rays begin, normal |
-//! | 56 or 2104 each | values: the words of [`FineLight`] or [`FarLight`] |
+//! | 60 or 2112 each | values: the words of [`SurfaceLight`] or [`FarLight`] |
 //! | 8 | number of nodes |
-//! | 1 to 9, 1 each | their names, as the keys; how many values are known |
+//! | 1 to 10, 1 each | their names, as the keys; how many values are known |
 //! | 1, 36 each | 1 if a surface was found there, else 0; if so, as of sites |
-//! | 28 each | the distance of what is nearest; values |
+//! | 12 each | of those: the values that are known |
 
 use std::io::{self, Read, Write};
 
 use bytemuck::Pod;
 use glam::Vec3;
 use lightmesh_layout::constants::SURFACE_KINDS;
-use lightmesh_layout::gathered::{FarLight, FineLight};
+use lightmesh_layout::gathered::{FarLight, SurfaceLight};
 
 use super::super::SavedGathered;
 use super::MeshFault;
@@ -70,11 +70,11 @@ fn write_nodes(output: &mut impl Write, nodes: &[SavedNode]) -> io::Result<()> {
     }
     nodes.iter().try_for_each(|node| {
         output.write_all(&[node.is_somewhere().into()])?;
-        if node.is_somewhere() {
-            write_words(output, &node.place)?;
+        if !node.is_somewhere() {
+            return Ok(());
         }
-        write_words(output, &node.nearest)?;
-        write_words(output, &node.values)
+        write_words(output, &node.place)?;
+        node.values[..node.known.into()].iter().try_for_each(|value| write_words(output, value))
     })
 }
 
@@ -88,7 +88,7 @@ impl<R: Read> Input<R> {
     /// What surfaces of a geometry gathered.
     pub(super) fn gathered(&mut self, geometry: u64) -> Result<SavedGathered, MeshFault> {
         let sources = self.long()?;
-        let fine = self.cells::<FineLight>()?;
+        let fine = self.cells::<SurfaceLight>()?;
         let far = self.cells::<FarLight>()?;
         Ok(SavedGathered { geometry, sources, light: SavedLight { fine, far, nodes: self.nodes()? } })
     }
@@ -122,13 +122,13 @@ impl<R: Read> Input<R> {
         let mut nodes = Vec::new();
         for (name, known) in names {
             let [is_somewhere] = self.bytes()?;
-            let node = SavedNode {
-                name,
-                place: if is_somewhere == 0 { SavedPlace::default() } else { self.place()? },
-                nearest: self.words()?,
-                known: known as u8,
-                values: self.words()?,
-            };
+            let mut node = SavedNode { name, known: known as u8, ..SavedNode::default() };
+            if is_somewhere != 0 {
+                node.place = self.place()?;
+                for value in &mut node.values[..known as usize] {
+                    *value = self.words()?;
+                }
+            }
             self.hold(&nodes, 1)?;
             nodes.push(node);
         }

@@ -7,8 +7,6 @@ use lightmesh_memory::Budget;
 
 use super::{MeshFault, short};
 
-/// Bits of the largest key.
-const DIFFERENCE_BITS: u32 = 63;
 /// Numbers that are read at once.
 const AT_ONCE: usize = 1 << 16;
 
@@ -82,9 +80,13 @@ impl<R: Read> Input<R> {
     /// The difference between two keys that ascend.
     pub(super) fn difference(&mut self) -> Result<u64, MeshFault> {
         let mut value = 0;
-        for shift in (0..DIFFERENCE_BITS.next_multiple_of(7)).step_by(7) {
+        for shift in (0..u64::BITS).step_by(7) {
             let [byte] = self.bytes()?;
-            value |= u64::from(byte & 0x7f) << shift;
+            let digits = u64::from(byte & 0x7f);
+            if digits << shift >> shift != digits {
+                break;
+            }
+            value |= digits << shift;
             if byte & 0x80 == 0 {
                 return Ok(value);
             }

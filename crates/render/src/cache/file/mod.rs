@@ -40,7 +40,7 @@ pub use fault::{MeshFault, MeshFileError, MeshSaveError};
 pub const MAGIC: [u8; 8] = *b"LM MESH\0";
 /// To be raised with every change of the format, of what decides what light points see, and
 /// of how light is gathered.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Bytes of the header.
 pub const HEADER: usize = 24;
 /// Bytes of the trailer.

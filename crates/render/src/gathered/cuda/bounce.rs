@@ -1,7 +1,10 @@
 //! Light that was reflected several times, on a device.
 
+use std::ops::Range;
+
 use bytemuck::Zeroable;
-use lightmesh_layout::gathered::{Bounce, Names, Node, Site, TakeSites};
+use lightmesh_layout::constants::BOUNCE_FINER;
+use lightmesh_layout::gathered::{Bounce, Names, Node, NodeLink, Site, TakeSites};
 
 use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Sites, taken};
@@ -16,16 +19,18 @@ const HIDE_NODES: PerStructure = per_structure!("gathered_rays", "hide_nodes");
 /// New nodes that are placed at once.
 const NODES_AT_ONCE: usize = 1 << 16;
 
-/// All sites that rays of others hit.
+/// All nodes, and what their rays see.
 pub(super) struct DeviceBounce<R: Runtime> {
     pub(super) names: DeviceNames<R>,
     pub(super) nodes: Buffer<R, Node>,
     pub(super) sites: Buffer<R, Site>,
-    pub(super) stamps: Buffer<R, u32>,
+    pub(super) links: Buffer<R, NodeLink>,
+    /// How many nodes are linked.
+    pub(super) linked: usize,
     pub(super) listed: Buffer<R, u32>,
     pub(super) listed_count: Buffer<R, u32>,
-    /// The number of the last list.
-    pub(super) stamp: u32,
+    pub(super) unlinked: Buffer<R, u32>,
+    pub(super) unlinked_count: Buffer<R, u32>,
 }
 
 impl<R: Runtime> DeviceBounce<R> {
@@ -37,15 +42,17 @@ impl<R: Runtime> DeviceBounce<R> {
             names,
             nodes: pool.room("nodes", room)?,
             sites: pool.room("sites of nodes", room)?,
-            stamps: pool.zeros("lists of nodes", room)?,
+            links: pool.room("links of nodes", 0)?,
+            linked: 0,
             listed: pool.room("listed nodes", room)?,
             listed_count: pool.zeros("number of listed nodes", 1)?,
-            stamp: 0,
+            unlinked: pool.room("nodes without links", room)?,
+            unlinked_count: pool.zeros("number of nodes without links", 1)?,
         })
     }
 
-    fn record(&self, fans: &DeviceFans<R>, order: u32) -> Bounce {
-        Bounce { order, stamp: self.stamp, ..self.with_names(fans, self.names.record()) }
+    fn record(&self, fans: &DeviceFans<R>) -> Bounce {
+        self.with_names(fans, self.names.record())
     }
 
     fn with_names(&self, fans: &DeviceFans<R>, names: Names) -> Bounce {
@@ -55,98 +62,102 @@ impl<R: Runtime> DeviceBounce<R> {
             names,
             nodes: self.nodes.output(),
             sites: self.sites.output(),
-            stamps: self.stamps.output(),
+            links: self.links.output(),
             listed: self.listed.output(),
             listed_count: self.listed_count.output(),
+            unlinked: self.unlinked.output(),
+            unlinked_count: self.unlinked_count.output(),
+            linked: self.linked as u32,
             ..Bounce::zeroed()
         }
     }
 
     /// Adds to what rays see what is reflected of light that lights do not give.
     pub(super) fn complete(&mut self, device: &Device<R>, fans: &DeviceFans<R>) -> Result<(), RenderError> {
-        self.resolve(device, fans, ORDERS as u32)?;
-        device.warps("reflect", fans.sites, &self.record(fans, ORDERS as u32))
+        self.resolve(device, fans)?;
+        self.ensure(device, fans)?;
+        device.warps("reflect", fans.sites, &self.record(fans))
     }
 
-    /// Finds the sites that rays see; what arrives there after up to `order` reflections is known.
-    fn resolve(&mut self, device: &Device<R>, fans: &DeviceFans<R>, order: u32) -> Result<(), RenderError> {
-        self.ensure(device, fans, order)?;
-        device.tracing(HIDE_NODES, fans.rays, &self.record(fans, order))
-    }
-
-    /// What arrives at the sites that rays see after up to `order` reflections is known afterwards.
-    fn ensure(&mut self, device: &Device<R>, fans: &DeviceFans<R>, order: u32) -> Result<(), RenderError> {
-        let pool = device.cuda.pool();
-        self.admit(device, fans)?;
-        // 1. The sites of which it is not.
-        self.stamp += 1;
-        self.listed_count.clear()?;
-        device.threads("list_nodes", fans.rays, &self.record(fans, order))?;
-        let count = read_count(&self.listed_count)?;
-        // What follows makes other lists.
-        let lacking = pool.room("nodes of which more is asked", count)?;
-        device.cuda.copy(&self.listed, &lacking, count)?;
-        let at_once = device.at_once(FAN);
-        for first in (0..count).step_by(at_once) {
-            device.wave.job.check()?;
-            let count = at_once.min(count - first);
-            let own = self.cast(device, &lacking, first, count)?;
-            device.threads("sum_first", count, &self.record(&own, order))?;
-            // 2. What arrives at those that their rays hit, after one reflection less; and the sums.
-            if order > 1 {
-                self.resolve(device, &own, order - 1)?;
-                device.threads("sum_second", count, &self.record(&own, order))?;
-            }
+    /// Finds the nodes that rays see; they are added where they are new.
+    fn resolve(&mut self, device: &Device<R>, fans: &DeviceFans<R>) -> Result<(), RenderError> {
+        for finer in 0..=BOUNCE_FINER {
+            self.admit(device, fans, finer)?;
+            device.tracing(HIDE_NODES, fans.rays, &Bounce { finer, ..self.record(fans) })?;
         }
         Ok(())
     }
 
-    /// Adds sites where they are new.
-    fn admit(&mut self, device: &Device<R>, fans: &DeviceFans<R>) -> Result<(), RenderError> {
-        let names = self.names.record();
-        let asked = self.with_names(fans, names);
+    /// Adds the nodes that rays ask which have no answer yet, where they are new.
+    fn admit(&mut self, device: &Device<R>, fans: &DeviceFans<R>, finer: i32) -> Result<(), RenderError> {
+        let asked = Bounce { finer, ..self.record(fans) };
         let new =
             self.names.admit(device, |names| device.threads("name_nodes", fans.rays, &Bounce { names, ..asked }))?;
         let (cuda, room) = (device.cuda, self.names.room());
         cuda.extend(&mut self.nodes, "nodes", new.start, room)?;
         cuda.extend(&mut self.sites, "sites of nodes", new.start, room)?;
-        cuda.extend(&mut self.stamps, "lists of nodes", new.start, room)?;
-        cuda.extend(&mut self.listed, "listed nodes", 0, room)?;
+        cuda.extend(&mut self.listed, "listed nodes", new.start, room)?;
+        cuda.extend(&mut self.unlinked, "nodes without links", new.start, room)?;
         for first in new.clone().step_by(NODES_AT_ONCE) {
             let count = NODES_AT_ONCE.min(new.end - first);
-            let record = Bounce { first: first as u32, count: count as u32, ..self.record(fans, 0) };
+            let record = Bounce { first: first as u32, count: count as u32, ..self.record(fans) };
             device.searching(PLACE_NODES, count, &record)?;
         }
         Ok(())
     }
 
-    /// Casts the rays of some of the listed nodes. Those that were cast before, for one reflection, are cast again: that takes less than to keep
-    /// what they hit.
-    fn cast(
-        &self,
-        device: &Device<R>,
-        listed: &Buffer<R, u32>,
-        first: usize,
-        count: usize,
-    ) -> Result<DeviceFans<R>, RenderError> {
-        let owners = device.cuda.pool().room("listed nodes at once", count)?;
-        let from = TakeSites {
-            sites: self.sites.input(),
-            numbers: listed.input(),
-            owners: owners.output(),
-            first: first as u32,
-            ..TakeSites::zeroed()
-        };
-        let sites = taken(device, from, count)?;
-        let nodes = Some((owners, self.nodes.input()));
-        let fans = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY, nodes }, FAN)?;
-        fans.see(device)?;
-        Ok(fans)
+    /// All that arrives at the nodes that rays see is known afterwards.
+    fn ensure(&mut self, device: &Device<R>, fans: &DeviceFans<R>) -> Result<(), RenderError> {
+        // 1. From reflection to reflection back, the nodes of which more is asked than is known. Each is listed with the highest number first.
+        self.listed_count.clear()?;
+        device.threads("list_nodes", fans.rays, &Bounce { order: ORDERS as u32, ..self.record(fans) })?;
+        let (mut frontier, mut ends) = (0..read_count(&self.listed_count)?, [0; ORDERS]);
+        for order in (1..=ORDERS).rev() {
+            ends[order - 1] = frontier.end;
+            if frontier.is_empty() {
+                continue;
+            }
+            self.link(device, fans, frontier.clone())?;
+            let (first, count) = (frontier.start as u32, frontier.len() as u32);
+            let record = Bounce { first, count, order: order as u32, ..self.record(fans) };
+            device.threads("list_seen", frontier.len() * FAN.len(), &record)?;
+            frontier = frontier.end..read_count(&self.listed_count)?;
+        }
+        // 2. The sums.
+        for (before, &end) in ends.iter().enumerate().skip(1) {
+            let record = Bounce { count: end as u32, order: before as u32, ..self.record(fans) };
+            device.threads("sum_nodes", end, &record)?;
+        }
+        Ok(())
+    }
+
+    /// Casts the rays of some of the listed nodes and finds the nodes that they see, unless it was done.
+    fn link(&mut self, device: &Device<R>, fans: &DeviceFans<R>, listed: Range<usize>) -> Result<(), RenderError> {
+        self.unlinked_count.clear()?;
+        let (first, count) = (listed.start as u32, listed.len() as u32);
+        device.threads("list_unlinked", listed.len(), &Bounce { first, count, ..self.record(fans) })?;
+        let new = read_count(&self.unlinked_count)?;
+        let linked = self.linked * FAN.len();
+        device.cuda.extend(&mut self.links, "links of nodes", linked, linked + new * FAN.len())?;
+        let at_once = device.at_once(FAN);
+        for first in (0..new).step_by(at_once) {
+            device.wave.job.check()?;
+            let count = at_once.min(new - first);
+            let from = TakeSites { sites: self.sites.input(), numbers: self.unlinked.input(), ..TakeSites::zeroed() };
+            let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
+            let own = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, FAN)?;
+            own.see(device)?;
+            self.resolve(device, &own)?;
+            let record = Bounce { first: first as u32, linked: (self.linked + first) as u32, ..self.record(&own) };
+            device.threads("link_nodes", count, &record)?;
+        }
+        self.linked += new;
+        Ok(())
     }
 
     /// Bytes in the device's memory.
     pub(super) fn memory(&self) -> u64 {
-        let nodes = self.nodes.bytes() + self.sites.bytes() + self.stamps.bytes() + self.listed.bytes();
-        self.names.memory() + nodes
+        let lists = self.listed.bytes() + self.unlinked.bytes();
+        self.names.memory() + self.nodes.bytes() + self.sites.bytes() + self.links.bytes() + lists
     }
 }

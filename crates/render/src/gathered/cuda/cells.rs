@@ -5,7 +5,7 @@ use std::ops::Range;
 use bytemuck::Zeroable;
 use lightmesh_layout::In;
 use lightmesh_layout::constants::SURFACE_KINDS;
-use lightmesh_layout::gathered::{FineLight, LightPlace, Link, Lookup, Site, SurfaceCells};
+use lightmesh_layout::gathered::{LightPlace, Link, Lookup, Site, SurfaceCells};
 
 use super::device::{Device, read_count};
 use super::names::DeviceNames;
@@ -36,12 +36,6 @@ pub(super) struct DeviceCells<R: Runtime> {
 pub(super) struct DeviceLinks<R: Runtime> {
     offsets: Buffer<R, u32>,
     links: Buffer<R, Link>,
-}
-
-/// The distance of what is nearest, of which a place or a site knows.
-pub(super) enum Nearest {
-    OfPlaces(In<f32>),
-    OfSites(In<FineLight>),
 }
 
 impl<R: Runtime> DeviceCells<R> {
@@ -167,13 +161,8 @@ impl<R: Runtime> DeviceCells<R> {
         device: &Device<R>,
         places: &Buffer<R, LightPlace>,
         links: &DeviceLinks<R>,
-        nearest: Nearest,
     ) -> Result<(), RenderError> {
-        let (nearest, fine): (In<f32>, In<FineLight>) = match nearest {
-            Nearest::OfPlaces(nearest) => (nearest, In::NULL),
-            Nearest::OfSites(fine) => (In::NULL, fine),
-        };
-        let record = Lookup { tally: device.cuda.tally()?, nearest, fine, ..self.lookup(device, places, links) };
+        let record = Lookup { tally: device.cuda.tally()?, ..self.lookup(device, places, links) };
         device.tracing(SETTLE, places.len(), &record)
     }
 

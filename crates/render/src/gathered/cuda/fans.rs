@@ -1,8 +1,7 @@
 //! Fans of rays on a device.
 
 use bytemuck::Zeroable;
-use lightmesh_layout::In;
-use lightmesh_layout::gathered::{Fans as Record, Node, SeenRay, Site, TakeSites};
+use lightmesh_layout::gathered::{Fans as Record, SeenRay, Site, TakeSites};
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays};
 
 use super::device::Device;
@@ -28,7 +27,7 @@ pub(super) struct DeviceFans<R: Runtime> {
     _weights: Buffer<R, f32>,
     _hits: Buffer<R, Hit>,
     _seen: Buffer<R, SeenRay>,
-    _owners: Option<Buffer<R, u32>>,
+    _levels: Buffer<R, i32>,
 }
 
 /// Where fans begin, and how far they go.
@@ -36,8 +35,6 @@ pub(super) struct Sites<R: Runtime> {
     pub(super) sites: Buffer<R, Site>,
     /// In cells of the site.
     pub(super) reach: f32,
-    /// The numbers of the sites among nodes, and these.
-    pub(super) nodes: Option<(Buffer<R, u32>, In<Node>)>,
 }
 
 /// Copies of `count` sites.
@@ -55,13 +52,14 @@ impl<R: Runtime> DeviceFans<R> {
     /// Casts a fan of rays from each site.
     pub(super) fn cast(device: &Device<R>, from: Sites<R>, fan: Fan) -> Result<DeviceFans<R>, RenderError> {
         let Device { cuda, wave, .. } = device;
-        let Sites { sites, reach, nodes } = from;
+        let Sites { sites, reach } = from;
         let (pool, count) = (cuda.pool(), sites.len());
         let rays = count * fan.len();
         let list = pool.room::<ListedRay>("gather rays", rays)?;
         let weights = pool.room("weights of gather rays", rays)?;
         let hits = pool.room("hits of gather rays", rays)?;
         let seen = pool.room("what gather rays see", rays)?;
+        let levels = pool.room("levels that gather rays ask", count)?;
         let cone = fan.cone();
         // The first of several samples: a single one would be the centre of a light.
         let sampling = sampling(Sampling { samples: 2, spread: true, ..wave.job.sampling });
@@ -76,12 +74,11 @@ impl<R: Runtime> DeviceFans<R> {
             sampling,
             tally: cuda.tally()?,
             sites: sites.input(),
-            owners: nodes.as_ref().map_or(In::NULL, |(owners, _)| owners.input()),
-            nodes: nodes.as_ref().map_or(In::NULL, |(_, nodes)| *nodes),
             list: list.output(),
             weights: weights.output(),
             hits: hits.output(),
             seen: seen.output(),
+            levels: levels.output(),
             count: count as u32,
             side: fan.side(),
             reach,
@@ -91,7 +88,6 @@ impl<R: Runtime> DeviceFans<R> {
         };
         device.warps("cast_fans", count, &record)?;
         device.tracing(TRACE, rays, &record)?;
-        let owners = nodes.map(|(owners, _)| owners);
         Ok(DeviceFans {
             record,
             sites: count,
@@ -101,20 +97,13 @@ impl<R: Runtime> DeviceFans<R> {
             _weights: weights,
             _hits: hits,
             _seen: seen,
-            _owners: owners,
+            _levels: levels,
         })
-    }
-
-    /// The distance of what is nearest to each site.
-    pub(super) fn nearest(&mut self, device: &Device<R>) -> Result<Buffer<R, f32>, RenderError> {
-        let nearest = device.cuda.pool().room("distances of what is nearest", self.sites)?;
-        self.record.nearest = nearest.output();
-        device.threads("nearest_of_fans", self.sites, &self.record)?;
-        Ok(nearest)
     }
 
     /// Finds what the rays see, but for the light that reaches what they hit from no light directly.
     pub(super) fn see(&self, device: &Device<R>) -> Result<(), RenderError> {
+        device.threads("level_fans", self.sites, &self.record)?;
         device.tracing(SEE, self.rays, &self.record)
     }
 }

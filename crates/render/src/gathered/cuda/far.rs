@@ -125,7 +125,7 @@ fn seen<R: Runtime>(
     fan: Fan,
 ) -> Result<DeviceFans<R>, RenderError> {
     device.wave.job.check()?;
-    let fans = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY, nodes: None }, fan)?;
+    let fans = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, fan)?;
     fans.see(device)?;
     bounce.complete(device, &fans)?;
     Ok(fans)

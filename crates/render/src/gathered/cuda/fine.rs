@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use bytemuck::Zeroable;
 use lightmesh_layout::constants::{COARSER, NEAR_CELLS, NEAR_REACH};
-use lightmesh_layout::gathered::{FineLight, GatherFine, LightPlace, Site, TakeSites};
+use lightmesh_layout::gathered::{GatherFine, LightPlace, Site, SurfaceLight, TakeSites};
 use lightmesh_layout::{In, Out};
 
 use super::bounce::DeviceBounce;
-use super::cells::{DeviceCells, Nearest};
+use super::cells::DeviceCells;
 use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Sites, taken};
 use super::far::{self, DeviceFar};
@@ -19,7 +19,7 @@ use crate::gpu::Cuda;
 
 /// What fine sites receive, by the number of its value.
 pub(super) struct DeviceFine<R: Runtime> {
-    pub(super) fine: Buffer<R, FineLight>,
+    pub(super) fine: Buffer<R, SurfaceLight>,
 }
 
 /// What coarse sites know.
@@ -38,7 +38,7 @@ pub(super) struct Asking<R: Runtime> {
 
 /// Where results go: the number of the first, in a list.
 struct Target {
-    fine: Out<FineLight>,
+    fine: Out<SurfaceLight>,
     first: usize,
 }
 
@@ -47,7 +47,7 @@ impl<R: Runtime> DeviceFine<R> {
         Ok(DeviceFine { fine: cuda.pool().room("fine light", 0)? })
     }
 
-    pub(super) fn input(&self) -> In<FineLight> {
+    pub(super) fn input(&self) -> In<SurfaceLight> {
         self.fine.input()
     }
 
@@ -91,7 +91,7 @@ pub(super) fn plain<R: Runtime>(
     device: &Device<R>,
     asking: Asking<R>,
     coarse: &mut Coarse<R>,
-) -> Result<Buffer<R, FineLight>, RenderError> {
+) -> Result<Buffer<R, SurfaceLight>, RenderError> {
     let fine = device.cuda.pool().room("light of sites of no cell", asking.places.len())?;
     receive(device, asking, coarse, Target { fine: fine.output(), first: 0 })?;
     Ok(fine)
@@ -106,13 +106,12 @@ fn receive<R: Runtime>(
     let Asking { sites, places } = asking;
     let (pool, count) = (device.cuda.pool(), places.len());
     // 1. What is near.
-    let from = Sites { sites, reach: NEAR_REACH * NEAR_CELLS, nodes: None };
-    let mut fans = DeviceFans::cast(device, from, coarse.fans.near)?;
-    let nearest = fans.nearest(device)?;
+    let from = Sites { sites, reach: NEAR_REACH * NEAR_CELLS };
+    let fans = DeviceFans::cast(device, from, coarse.fans.near)?;
 
     // 2. The coarse sites around that are seen, and what they gather.
     let links = coarse.cells.links(device, &places)?;
-    coarse.cells.settle(device, &places, &links, Nearest::OfPlaces(nearest.input()))?;
+    coarse.cells.settle(device, &places, &links)?;
     let new = coarse.cells.value(device, &places, &links)?;
     coarse.far.extend(device, coarse.cells, new, coarse.bounce, coarse.fans.far)?;
 

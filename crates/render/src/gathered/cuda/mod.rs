@@ -24,7 +24,7 @@ use crate::gpu::Cuda;
 use crate::gpu::rays::DeviceWave;
 use crate::shading::has_reliefs;
 use bounce::DeviceBounce;
-use cells::{DeviceCells, Nearest};
+use cells::DeviceCells;
 use device::{Device, read_count};
 use far::DeviceFar;
 use fine::{Asking, Coarse, DeviceFine};
@@ -190,7 +190,7 @@ fn gather_part<R: Runtime>(
             let links = fine_cells.links(device, &places)?;
             let new = fine_cells.value(device, &places, &links)?;
             fine.extend(device, fine_cells, new, &mut coarse)?;
-            fine_cells.settle(device, &places, &links, Nearest::OfSites(fine.input()))?;
+            fine_cells.settle(device, &places, &links)?;
             Some(links)
         }
     };

@@ -1,9 +1,9 @@
 //! Gathered light of a device in the form of files ([`saved`](super::super::saved)), and back. Numbers are assigned anew, in the order of cells and
 //! names.
 
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable};
 use lightmesh_layout::constants::CELL_INDEX_BITS;
-use lightmesh_layout::gathered::{FarLight, FineLight, Name, Node, Site};
+use lightmesh_layout::gathered::{Name, Node, Site};
 use lightmesh_layout::geometry::Vec3;
 
 use super::bounce::DeviceBounce;
@@ -15,7 +15,6 @@ use super::names::DeviceNames;
 use super::{DeviceSurfaceLight, Kept};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
-use crate::gathered::bounce::ORDERS;
 use crate::gathered::cells::CellKey;
 use crate::gathered::saved::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite, level_of_key, seed_of};
 
@@ -36,11 +35,9 @@ impl<R: Runtime> DeviceSurfaceLight<R> {
 
 impl<R: Runtime> Kept<R> {
     fn saved(&self) -> Result<SavedLight, RenderError> {
-        let fine = |fine: FineLight| FineLight { spare: 0, ..fine };
-        let far = |far: FarLight| FarLight { spare: 0, ..far };
         Ok(SavedLight {
-            fine: self.fine_cells.saved(&self.fine.fine, fine)?,
-            far: self.far_cells.saved(&self.far.far, far)?,
+            fine: self.fine_cells.saved(&self.fine.fine)?,
+            far: self.far_cells.saved(&self.far.far)?,
             nodes: self.bounce.saved()?,
         })
     }
@@ -58,7 +55,7 @@ impl<R: Runtime> Kept<R> {
 }
 
 impl<R: Runtime> DeviceCells<R> {
-    fn saved<V: Pod>(&self, values: &Buffer<R, V>, clean: impl Fn(V) -> V) -> Result<SavedCells<V>, RenderError> {
+    fn saved<V: Pod>(&self, values: &Buffer<R, V>) -> Result<SavedCells<V>, RenderError> {
         let names = self.names.read()?;
         let ranges = first_of(&self.ranges, names.len())?;
         let sites = first_of(&self.sites, self.site_number)?;
@@ -71,7 +68,7 @@ impl<R: Runtime> DeviceCells<R> {
             let (first, count) = (range as u32 as usize, (range >> 32) as usize);
             let site = |number: usize| {
                 // Numbers of values are stored increased by 1: 0 is none.
-                let value = numbers[number].checked_sub(1).map(|value| clean(values[value as usize]));
+                let value = numbers[number].checked_sub(1).map(|value| values[value as usize]);
                 (sites[number].seed, place_of(&sites[number]), value)
             };
             saved.add(key, (first..first + count).map(site));
@@ -81,7 +78,7 @@ impl<R: Runtime> DeviceCells<R> {
 
     fn restored<V>(device: &Device<R>, saved: &SavedCells<V>) -> Result<DeviceCells<R>, RenderError> {
         let (pool, new) = (device.cuda.pool(), DeviceCells::new(device.cuda)?);
-        let name = |&(key, _): &(CellKey, u32)| name_of(key, key, 0);
+        let name = |&(key, _): &(CellKey, u32)| name_of(key, key, 0, false);
         let mut first = 0;
         let range = |&(_, count): &(CellKey, u32)| {
             let range = u64::from(count) << 32 | first;
@@ -118,9 +115,8 @@ impl<R: Runtime> DeviceBounce<R> {
         let node = |((name, node), site): ((&Name, &Node), &Site)| SavedNode {
             name: name.key,
             place: place_of(site),
-            nearest: node.nearest,
             known: node.known as u8,
-            values: [node.first, node.second].map(array_of),
+            values: node.values.map(array_of),
         };
         let all = names.iter().zip(&nodes).zip(&sites).map(node);
         let mut saved: Vec<SavedNode> = all.filter(|node| node.known > 0).collect();
@@ -128,21 +124,21 @@ impl<R: Runtime> DeviceBounce<R> {
         Ok(saved)
     }
 
+    /// If more of nodes is asked, their rays are cast again.
     fn restored(device: &Device<R>, saved: &[SavedNode]) -> Result<DeviceBounce<R>, RenderError> {
-        const { assert!(ORDERS == 2, "a node has as many values") };
         let (pool, new) = (device.cuda.pool(), DeviceBounce::new(device.cuda)?);
         let node = |node: &SavedNode| {
-            let [first, second] = node.values.map(Vec3::from);
-            Node { first, nearest: node.nearest, second, known: node.known.into() }
+            let (values, known) = (node.values.map(Vec3::from), node.known.into());
+            Node { values, known, wanted: known, ..Node::zeroed() }
         };
-        let site = |node: &SavedNode| site_at(node.place, node.level(), node.name);
-        let name = |node: &SavedNode| name_of(node.name, node.cell(), node.kind());
+        let site = |node: &SavedNode| site_at(node.place, node.level(), node.seed());
+        let name = |node: &SavedNode| name_of(node.name, node.cell(), node.kind().into(), node.is_finer());
         Ok(DeviceBounce {
             names: DeviceNames::restored(device, saved.iter().map(name).collect())?,
             nodes: pool.upload("nodes", &saved.iter().map(node).collect::<Vec<Node>>())?,
             sites: pool.upload("sites of nodes", &saved.iter().map(site).collect::<Vec<Site>>())?,
-            stamps: pool.zeros("lists of nodes", saved.len())?,
             listed: pool.room("listed nodes", saved.len())?,
+            unlinked: pool.room("nodes without links", saved.len())?,
             ..new
         })
     }
@@ -156,11 +152,11 @@ fn first_of<R: Runtime, T: Pod>(buffer: &Buffer<R, T>, count: usize) -> Result<V
 }
 
 /// A name with the index of its cell along each axis.
-fn name_of(key: u64, cell: CellKey, kind: u32) -> Name {
+fn name_of(key: u64, cell: CellKey, kind: u32, finer: bool) -> Name {
     let unused = i32::BITS - CELL_INDEX_BITS;
     // The highest bit of an index is its sign.
     let axis = |axis: u32| ((cell >> (axis * CELL_INDEX_BITS)) as i32) << unused >> unused;
-    Name { key, cell: [axis(0), axis(1), axis(2)], level: level_of_key(cell), kind, spare: 0 }
+    Name { key, cell: [axis(0), axis(1), axis(2)], level: level_of_key(cell), kind, finer: finer.into() }
 }
 
 fn site_at([position, origin, normal]: SavedPlace, level: i32, seed: u64) -> Site {

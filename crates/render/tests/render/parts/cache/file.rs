@@ -10,7 +10,7 @@ use lightmesh_render::internals::cache::{
     Content, HEADER, MAGIC, Places, SavedGathered, Section, Seen, Stored, StoredAnswers, StoredColumn, TRAILER, decode,
     load, write,
 };
-use lightmesh_render::internals::gathered::{SavedCells, SavedLight, SavedNode, SavedSite};
+use lightmesh_render::internals::gathered::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite};
 use lightmesh_render::{Acceleration, MeshCache, MeshFault, MeshSaveError, PreparedScene, Unobserved};
 use lightmesh_scene::LightKind;
 use lightmesh_testkit::pile;
@@ -55,14 +55,18 @@ fn section(scene: &PreparedScene) -> Section {
 fn gathered(scene: &PreparedScene) -> SavedGathered {
     let place = [[1.0, -2.5, 1e-7], [1.0, -2.4, 0.0], [0.0, 1.0, 0.0]];
     let site = |(kind, has_value)| SavedSite { kind, has_value, place };
-    let cells = vec![(0, 1), (5 << 51, 3), ((1 << 59) - 1, 2)];
+    let cells = vec![(0, 1), (5 << 51, 3), ((255 << 51) - 1, 2)];
     let sites: Vec<SavedSite> = [(0, true), (1, false), (7, true), (11, false), (2, false), (3, true)].map(site).into();
-    let node =
-        |(name, known, place)| SavedNode { name, place, nearest: f32::INFINITY, known, values: [[0.5; 3], [0.75; 3]] };
+    let node = |(name, known, place): (u64, u8, SavedPlace)| {
+        let mut values = [[0.0; 3]; 12];
+        let is_known = usize::from(known) * usize::from(place != SavedPlace::default());
+        (1..).zip(&mut values[..is_known]).for_each(|(number, value)| *value = [number as f32; 3]);
+        SavedNode { name, place, known, values }
+    };
     let light = SavedLight {
         fine: SavedCells { cells: cells.clone(), sites: sites.clone(), values: vec![words(1); 3] },
         far: SavedCells { cells: cells[..1].into(), sites: sites[..1].into(), values: vec![words(2)] },
-        nodes: [(3, 1, place), (4 << 55, 2, Default::default()), ((1 << 63) - 1, 2, place)].map(node).into(),
+        nodes: [(3, 1, place), (4 << 55, 12, Default::default()), ((255 << 56) - 1, 12, place)].map(node).into(),
     };
     SavedGathered { geometry: scene.geometry.hash(), sources: 0x1234_5678_9abc_def0, light }
 }
@@ -181,7 +185,7 @@ fn each_fault_has_its_name() {
     let (folder, path, bytes) = saved(&scene);
     let other = fault(&scene, &path, b"P6 640 480 255");
     assert!(matches!(other, MeshFault::NotAMesh) && !other.is_replaceable());
-    for found in [1, 2, 4] {
+    for found in [1, 2, 3, 5] {
         let mut other = bytes.clone();
         other[8] = found;
         let fault = fault(&scene, &path, &other);
@@ -295,7 +299,7 @@ fn gathered_light_that_cannot_be_is_refused() {
     }
     assert!(refused(&[&number(1), &[9, 0]]).contains("more than it can have"));
     assert!(refused(&[&number(1), &[9, 13]]).contains("more than it can have"));
-    assert!(refused(&[&none, &none, &number(1), &[9, 3]]).contains("more than it can have"));
+    assert!(refused(&[&none, &none, &number(1), &[9, 13]]).contains("more than it can have"));
     assert!(refused(&[&number(1), &[9, 1], &[12]]).contains("of no kind"));
     assert!(refused(&[&number(1), &[9, 1], &[0x20]]).contains("of no kind"));
     for place in [[f32::NAN; 9], [0.0; 9], [1.0; 9]] {
