@@ -425,8 +425,12 @@ constants! {
     CELL_OFFSET_Z: f32 = 0.319;
     /// Bits of a surface cell's index along an axis; it repeats beyond.
     CELL_INDEX_BITS: u32 = 17;
-    /// Added to a level so that it is positive.
-    LEVEL_BIAS: i32 = 127;
+    /// Added to a level so that it is positive, with seven bits.
+    LEVEL_BIAS: i32 = 64;
+    /// The level of all widths that are smaller. Levels of cells differ from those of widths by a few.
+    LEAST_LEVEL: i32 = -60;
+    /// The level of all widths that are larger.
+    MOST_LEVEL: i32 = 58;
     /// Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
     SURFACE_KINDS: u32 = 12;
     /// How far sites move away from edges, in cells.
@@ -436,6 +440,8 @@ constants! {
     /// A site is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
     /// the ground below a floor would take the cell's only site from the floor.
     SITE_OPEN: f32 = 1.0;
+    /// The same for sites that rays of others hit, of which smaller cells may have better ones.
+    NODE_OPEN: f32 = 0.25;
     /// How many points of a kind are looked at for an open one.
     SITE_CANDIDATES: u32 = 4;
     /// The distance within which sites count, in cells.
@@ -472,8 +478,8 @@ constants! {
     SKY_CONE: f32 = 0.25;
     /// What a ray hits is asked for light in a cell of this share of the distance.
     BOUNCE_SIZE: f32 = 0.2;
-    /// If a site is hidden, cells that are smaller by up to this many levels are asked, one after the other.
-    BOUNCE_FINER: i32 = 1;
+    /// If a site is hidden or covered, cells that are smaller by up to this many levels are asked, one after the other.
+    BOUNCE_FINER: i32 = 2;
     /// The rays of a site that other rays hit form a square with this side.
     BOUNCE_SIDE: u32 = 8;
     /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's. After so many, a share of

@@ -17,7 +17,7 @@ records! {
         level: i32,
         /// The kind of surface.
         kind: u32,
-        /// 1: the cell of a node is smaller than the one that was asked at first.
+        /// By how many levels the cell of a node is smaller than what was asked at first.
         finer: u32,
     }
 
@@ -151,6 +151,8 @@ records! {
         wanted: u32,
         /// Which fan of links is its own, and one; 0 if it is not linked.
         links: u32,
+        /// 1: something covers it.
+        covered: u32,
     }
 
     /// What a ray of a node sees.

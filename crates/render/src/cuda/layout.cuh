@@ -311,8 +311,12 @@
 #define CELL_OFFSET_Z 0x1.46a7fp-2f
 // Bits of a surface cell's index along an axis; it repeats beyond.
 #define CELL_INDEX_BITS 17u
-// Added to a level so that it is positive.
-#define LEVEL_BIAS 127
+// Added to a level so that it is positive, with seven bits.
+#define LEVEL_BIAS 64
+// The level of all widths that are smaller. Levels of cells differ from those of widths by a few.
+#define LEAST_LEVEL -60
+// The level of all widths that are larger.
+#define MOST_LEVEL 58
 // Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
 #define SURFACE_KINDS 12u
 // How far sites move away from edges, in cells.
@@ -322,6 +326,8 @@
 // A site is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
 // the ground below a floor would take the cell's only site from the floor.
 #define SITE_OPEN 0x1p0f
+// The same for sites that rays of others hit, of which smaller cells may have better ones.
+#define NODE_OPEN 0x1p-2f
 // How many points of a kind are looked at for an open one.
 #define SITE_CANDIDATES 4u
 // The distance within which sites count, in cells.
@@ -358,8 +364,8 @@
 #define SKY_CONE 0x1p-2f
 // What a ray hits is asked for light in a cell of this share of the distance.
 #define BOUNCE_SIZE 0x1.99999ap-3f
-// If a site is hidden, cells that are smaller by up to this many levels are asked, one after the other.
-#define BOUNCE_FINER 1
+// If a site is hidden or covered, cells that are smaller by up to this many levels are asked, one after the other.
+#define BOUNCE_FINER 2
 // The rays of a site that other rays hit form a square with this side.
 #define BOUNCE_SIDE 8u
 // How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's. After so many, a share of
@@ -1281,13 +1287,15 @@ struct alignas(4) Node {
     unsigned known;
     unsigned wanted;
     unsigned links;
+    unsigned covered;
 };
-static_assert(sizeof(Node) == 168, "size of Node");
+static_assert(sizeof(Node) == 172, "size of Node");
 static_assert(PLACE_OF(Node, values) == 0, "place of Node::values");
 static_assert(PLACE_OF(Node, hidden) == 144, "place of Node::hidden");
 static_assert(PLACE_OF(Node, known) == 156, "place of Node::known");
 static_assert(PLACE_OF(Node, wanted) == 160, "place of Node::wanted");
 static_assert(PLACE_OF(Node, links) == 164, "place of Node::links");
+static_assert(PLACE_OF(Node, covered) == 168, "place of Node::covered");
 
 struct alignas(4) NodeLink {
     unsigned node;

@@ -16,10 +16,13 @@ DEVICE bool is_open(const SeenRay &seen) { return asks_node(seen) && seen.node =
 // The name of the node that a ray asks: in a cell that is smaller by `finer` levels than the one that was asked at first.
 DEVICE Name name_of_seen(const SeenRay &seen, int finer) {
     const int level = seen.level - finer;
-    return name_of_node(level, cell_at(level, seen.position), seen.kind, finer != 0);
+    return name_of_node(level, cell_at(level, seen.position), seen.kind, (unsigned)finer);
 }
 
-DEVICE bool is_somewhere(const Site &site) { return !(site.normal == splat(0.0f)); }
+// Whether a node may answer what is asked in a cell that is smaller by so many levels than the one that was asked at first.
+DEVICE bool may_answer(const Node &node, const Site &site, int finer) {
+    return !(site.normal == splat(0.0f)) && (!node.covered || finer == BOUNCE_FINER);
+}
 
 // Asks for the node that a ray sees.
 DEVICE void name_node(const Bounce &args, const SeenRay &seen) { add_name(args.names, name_of_seen(seen, args.finer)); }
@@ -33,7 +36,7 @@ DEVICE void hide_nodes(const Bounce &args, const Structure &structure) {
     SeenRay &seen = args.fans.seen[ray];
     const unsigned node = number_of(args.names, name_of_seen(seen, args.finer).key);
     const Site &site = args.sites[node];
-    if (is_somewhere(site) && !occluded(structure, args.fans.tally, site_segment(place_of_seen(seen), site)))
+    if (may_answer(args.nodes[node], site, args.finer) && !occluded(structure, args.fans.tally, site_segment(place_of_seen(seen), site)))
         seen.node = node;
 }
 

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! over the rays j of node k. S_j is what is seen without other reflections. If something is between a hit and the site of its cell, such as a wall
-//! that stands on a floor, a smaller cell around the hit is asked, and then one smaller still; at last the mean of what the other hits receive
-//! stands for it: so nothing leaks.
+//! that stands on a floor, or covers the site nearer than the cell is large, such as the other side of a slit, a smaller cell around the hit is asked,
+//! up to twice; at last the mean of what the other hits receive stands for it: so nothing leaks.
 //!
 //! A node is linked once, whatever is asked of it. It keeps the light after each number of reflections: so what is known of it depends neither on who
 //! asked for it nor on what was asked before. Twin: `bounce.cuh`.
@@ -32,7 +32,7 @@ pub(crate) const ORDERS: usize = MOST_ORDERS as usize;
 /// The rays of a node.
 pub(super) const FAN: Fan = Fan::new(BOUNCE_SIDE);
 
-/// The name of a node: its cell, its kind of surface, and whether the cell is smaller than what was asked at first.
+/// The name of a node: its cell, by how many levels that is smaller than what was asked at first, and its kind of surface.
 type Name = u64;
 
 impl Spot {
@@ -41,7 +41,7 @@ impl Spot {
     }
 
     fn name(&self) -> Name {
-        self.asked().key << NAME_BITS | u64::from(self.finer != 0) << KIND_BITS | u64::from(self.kind)
+        self.asked().key << NAME_BITS | (self.finer as u64) << KIND_BITS | u64::from(self.kind)
     }
 
     /// The same in a cell of half the size, if there may be one.
@@ -62,8 +62,11 @@ pub(super) struct Links {
 
 /// A site, and what its rays see.
 pub(super) struct Node {
-    /// Its level is that of the smallest cells that its rays ask.
+    /// Its level is that of the smallest cells that its rays ask: that of its cell, or what was asked at first. So cells do not become smaller from
+    /// reflection to reflection.
     pub(super) site: Site,
+    /// Whether something covers it: for smaller cells around a hit, others may answer better.
+    pub(super) covered: bool,
     /// `None` if its rays were not cast.
     links: Option<Links>,
     /// How many of the values are known: what arrives after up to one, two, … reflections.
@@ -75,17 +78,19 @@ pub(super) struct Node {
 
 impl Node {
     /// A node of which that much is known.
-    pub(super) fn new(site: Site, known: usize, values: [Vec3; ORDERS]) -> Node {
-        Node { site, links: None, known, wanted: known, values }
+    pub(super) fn new(site: Site, covered: bool, known: usize, values: [Vec3; ORDERS]) -> Node {
+        Node { site, covered, links: None, known, wanted: known, values }
     }
 
     /// Nothing arrives where no surface was found; all is known of that.
-    fn placed(site: Option<Site>) -> Node {
-        Node::new(site.unwrap_or_default(), if site.is_some() { 0 } else { ORDERS }, [Vec3::ZERO; ORDERS])
+    fn placed(found: Option<(Site, bool)>) -> Node {
+        let (site, is_open) = found.unwrap_or_default();
+        Node::new(site, !is_open, if found.is_some() { 0 } else { ORDERS }, [Vec3::ZERO; ORDERS])
     }
 
-    fn is_somewhere(&self) -> bool {
-        self.site.point.normal != Vec3::ZERO
+    /// Whether it may answer what is asked in a cell that is smaller by so many levels than the one that was asked at first.
+    fn may_answer(&self, finer: i32) -> bool {
+        self.site.point.normal != Vec3::ZERO && (!self.covered || finer == BOUNCE_FINER)
     }
 }
 
@@ -158,7 +163,7 @@ impl Bounce {
         let mut numbers: Vec<Option<u32>> = asking.iter().map(|(_, spot)| Some(self.numbers[&spot.name()])).collect();
         let (mut segments, mut owners) = (Vec::new(), Vec::new());
         for (index, ((_, spot), number)) in asking.iter().zip(&mut numbers).enumerate() {
-            let node = number.map(|number| &self.nodes[number as usize]).filter(|node| node.is_somewhere());
+            let node = number.map(|number| &self.nodes[number as usize]).filter(|node| node.may_answer(spot.finer));
             match node {
                 Some(node) => {
                     segments.push(spot.place.segment(&node.site.point));
@@ -182,12 +187,12 @@ impl Bounce {
         let find = |new: &[(Name, &Spot)]| {
             let mut triangles = Vec::new();
             let site = |(_, spot): &(Name, &Spot)| {
-                let site = nearest_of_kind(scene.scene, &spot.asked(), spot.kind, &mut triangles)?;
-                Some(Site { level: asking_level(site.level, spot.finer != 0), ..site })
+                let (site, is_open) = nearest_of_kind(scene.scene, &spot.asked(), spot.kind, &mut triangles)?;
+                Some((Site { level: site.level + spot.finer, ..site }, is_open))
             };
             new.iter().map(site).collect::<Vec<_>>()
         };
-        let sites: Vec<Option<Site>> = new.par_chunks(64).flat_map_iter(find).collect();
+        let sites: Vec<Option<(Site, bool)>> = new.par_chunks(64).flat_map_iter(find).collect();
         for ((name, _), site) in new.iter().zip(sites) {
             self.numbers.insert(*name, self.nodes.len() as u32);
             self.nodes.push(Node::placed(site));
@@ -261,12 +266,6 @@ impl Bounce {
         let lit: Vec3 = seen.iter().map(|&(number, weight)| weight * value(number)).sum();
         first + lit + *hidden * mean(seen.iter().map(|&(number, _)| value(number)))
     }
-}
-
-/// The level of the smallest cells that a node's rays ask: its own, or what was asked at first, which was no larger, so that cells do not become
-/// smaller from reflection to reflection.
-pub(super) fn asking_level(level: i32, is_finer: bool) -> i32 {
-    if is_finer { level + BOUNCE_FINER } else { level }
 }
 
 /// What arrives at a node with the last reflection alone, and what its rays see.

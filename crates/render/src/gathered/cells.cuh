@@ -8,7 +8,7 @@
 DEVICE int level_of_width(float width, float &rest) {
     const unsigned bits = __float_as_uint(larger(width, F32_MIN_POSITIVE));
     rest = __uint_as_float((bits & ~F32_INFINITY_BITS) | __float_as_uint(1.0f));
-    return (int)(bits >> 23) - 127;
+    return max(LEAST_LEVEL, min((int)(bits >> 23) - 127, MOST_LEVEL));
 }
 
 // The size of the cells of a level.
@@ -35,7 +35,7 @@ DEVICE Bounds bounds_of_cell(int level, IVec3 cell) {
 
 DEVICE unsigned long long cell_axis(int index) { return (unsigned)index & ((1u << CELL_INDEX_BITS) - 1); }
 
-// A cell in 59 bits.
+// A cell in 58 bits.
 DEVICE unsigned long long cell_key(int level, IVec3 cell) {
     return (unsigned long long)(level + LEVEL_BIAS) << 3 * CELL_INDEX_BITS | cell_axis(cell.z) << 2 * CELL_INDEX_BITS |
            cell_axis(cell.y) << CELL_INDEX_BITS | cell_axis(cell.x);
@@ -44,13 +44,10 @@ DEVICE unsigned long long cell_key(int level, IVec3 cell) {
 // A cell among names.
 DEVICE Name name_of_cell(int level, IVec3 cell) { return Name{cell_key(level, cell), {cell.x, cell.y, cell.z}, level, 0, 0}; }
 
-// One kind of surface in a cell among names, and whether the cell is smaller than what was asked at first.
-DEVICE Name name_of_node(int level, IVec3 cell, unsigned kind, bool finer) {
-    return Name{cell_key(level, cell) << 5 | (finer ? 16 : 0) | kind, {cell.x, cell.y, cell.z}, level, kind, finer ? 1u : 0u};
+// One kind of surface in a cell among names; the cell is smaller by so many levels than what was asked at first.
+DEVICE Name name_of_node(int level, IVec3 cell, unsigned kind, unsigned finer) {
+    return Name{cell_key(level, cell) << 6 | finer << 4 | kind, {cell.x, cell.y, cell.z}, level, kind, finer};
 }
-
-// The level of the smallest cells that a node's rays ask: its own, or what was asked at first, which was no larger.
-DEVICE int asking_level(const Name &name) { return name.level + (name.finer ? BOUNCE_FINER : 0); }
 
 DEVICE IVec3 cell_of_name(const Name &name) { return IVec3{name.cell[0], name.cell[1], name.cell[2]}; }
 

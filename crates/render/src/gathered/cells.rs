@@ -8,8 +8,9 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::{IVec3, Vec3};
 use lightmesh_layout::constants::{
-    CELL_INDEX_BITS, CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z, GOLDEN_RATIO, LEAST_SQUARE, LEVEL_BIAS, NODE_REACH,
-    SITE_CANDIDATES, SITE_INWARDS, SITE_OPEN, SITE_RADIUS, SITE_RAISED, SURFACE_KINDS,
+    CELL_INDEX_BITS, CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z, GOLDEN_RATIO, LEAST_LEVEL, LEAST_SQUARE, LEVEL_BIAS,
+    MOST_LEVEL, NODE_OPEN, NODE_REACH, SITE_CANDIDATES, SITE_INWARDS, SITE_OPEN, SITE_RADIUS, SITE_RAISED,
+    SURFACE_KINDS,
 };
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
@@ -24,14 +25,14 @@ const OFFSET: Vec3 = Vec3::new(CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z);
 /// A kind of surface.
 pub(super) type Kind = u8;
 
-/// A cell in 59 bits: level, then index along z, y and x.
+/// A cell in 58 bits: level, then index along z, y and x.
 pub(super) type CellKey = u64;
 
 /// The largest power of two up to `width`, as its exponent, and the rest, from 1 to 2.
 #[inline(always)]
 pub(super) fn level_of(width: f32) -> (i32, f32) {
     let bits = width.max(f32::MIN_POSITIVE).to_bits();
-    ((bits >> 23) as i32 - 127, f32::from_bits(bits & 0x7f_ffff | 0x3f80_0000))
+    (((bits >> 23) as i32 - 127).clamp(LEAST_LEVEL, MOST_LEVEL), f32::from_bits(bits & 0x7f_ffff | 0x3f80_0000))
 }
 
 /// The size of the cells of a level.
@@ -171,13 +172,13 @@ fn sites_of(scene: &PreparedScene, asked: &Asked, triangles: &mut Vec<u32>) -> V
     (0..).zip(&candidates).filter_map(site).collect()
 }
 
-/// The site of a kind of surface that is nearest to a cell's middle, wherever it lies: the cell must have that kind.
+/// The site of a kind of surface that is nearest to a cell's middle, wherever it lies: the cell must have that kind. Whether nothing covers it.
 pub(super) fn nearest_of_kind(
     scene: &PreparedScene,
     asked: &Asked,
     kind: Kind,
     triangles: &mut Vec<u32>,
-) -> Option<Site> {
+) -> Option<(Site, bool)> {
     let bounds = asked.bounds();
     let (middle, size) = (bounds.center(), size_of_level(asked.level));
     // Cells may have many triangles: those in the middle come first.
@@ -196,8 +197,8 @@ pub(super) fn nearest_of_kind(
                 }
             }
         }
-        if let Some(site) = candidates.site(scene, asked, kind) {
-            return Some(site);
+        if let Some(found) = candidates.open_site(scene, asked, kind, NODE_OPEN) {
+            return Some(found);
         }
         share *= 2.0;
     }
@@ -259,20 +260,31 @@ impl Candidates {
         }
     }
 
-    /// The first one that is not covered, such as a wall behind panels; the nearest if all are.
+    /// The first one that is not covered, such as a wall behind panels; the nearest if all are, or if it is the only one.
     fn site(&self, scene: &PreparedScene, asked: &Asked, kind: Kind) -> Option<Site> {
+        match self.nearest[1] {
+            Some(_) => self.open_site(scene, asked, kind, SITE_OPEN).map(|(site, _)| site),
+            None => self.sites(scene, asked, kind).next(),
+        }
+    }
+
+    /// The first one above which nothing is within this distance, in cells, or the nearest if all are covered; which of both.
+    fn open_site(&self, scene: &PreparedScene, asked: &Asked, kind: Kind, open: f32) -> Option<(Site, bool)> {
+        let mut sites = self.sites(scene, asked, kind);
+        let first = sites.next()?;
+        let is_open = |site: &Site| is_free(scene, site, open);
+        let open = if is_open(&first) { Some(first) } else { sites.find(is_open) };
+        Some((open.unwrap_or(first), open.is_some()))
+    }
+
+    fn sites(&self, scene: &PreparedScene, asked: &Asked, kind: Kind) -> impl Iterator<Item = Site> {
         let size = size_of_level(asked.level);
-        let site = |near: &Near| Site {
+        let site = move |near: &Near| Site {
             point: near.surface_point(scene, kind, size),
             level: asked.level,
             seed: asked.key << 4 | u64::from(kind),
         };
-        let first = site(self.nearest[0].as_ref()?);
-        if self.nearest[1].is_none() {
-            return Some(first);
-        }
-        let is_open = |site: &Site| is_free(scene, site, SITE_OPEN);
-        Some(self.nearest.iter().flatten().map(site).find(is_open).unwrap_or(first))
+        self.nearest.iter().flatten().map(site)
     }
 }
 

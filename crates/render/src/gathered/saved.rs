@@ -11,7 +11,7 @@ use lightmesh_layout::gathered::{Bins as BinsRecord, FarLight, SurfaceLight as L
 
 use super::SurfaceLight;
 pub(crate) use super::bounce::ORDERS;
-use super::bounce::{Bounce, Node, asking_level};
+use super::bounce::{Bounce, Node};
 use super::cells::{CellKey, Cells, Site};
 use super::far::Far;
 use super::light::{Bins, Light};
@@ -56,10 +56,12 @@ pub type SavedPlace = [[f32; 3]; 3];
 /// What arrives at a site that rays of others hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SavedNode {
-    /// Its cell, its kind of surface, and whether the cell is smaller than what was asked at first.
+    /// Its cell, by how many levels that is smaller than what was asked at first, and its kind of surface.
     pub name: u64,
     /// All zeros if no such surface was found.
     pub place: SavedPlace,
+    /// Whether something covers it.
+    pub covered: bool,
     /// How many of the values are known.
     pub known: u8,
     /// Light after up to one, two, … reflections; zero where it is not known.
@@ -69,10 +71,11 @@ pub struct SavedNode {
 /// Bits of a kind of surface in names.
 pub(super) const KIND_BITS: u32 = 4;
 const KIND: u64 = (1 << KIND_BITS) - 1;
-/// Bits of names of nodes that follow that of their cell: the kind, and whether the cell is smaller than what was asked at first.
-pub(super) const NAME_BITS: u32 = KIND_BITS + 1;
-/// Cells have smaller keys than this: no level has all bits.
-pub(crate) const END_OF_CELLS: CellKey = (u8::MAX as CellKey) << (3 * CELL_INDEX_BITS);
+const FINER: u64 = 3;
+/// Bits of names of nodes that follow that of their cell: by how many levels this is smaller than what was asked at first, and the kind.
+pub(super) const NAME_BITS: u32 = KIND_BITS + FINER.count_ones();
+/// Cells have smaller keys than this: no level has all seven bits.
+pub(crate) const END_OF_CELLS: CellKey = 127 << (3 * CELL_INDEX_BITS);
 /// Nodes have smaller names than this.
 pub(crate) const END_OF_NAMES: u64 = END_OF_CELLS << NAME_BITS;
 
@@ -136,15 +139,16 @@ impl<V> SavedCells<V> {
 impl SavedNode {
     /// The level of the smallest cells that it asks.
     pub(super) fn level(&self) -> i32 {
-        asking_level(level_of_key(self.cell()), self.is_finer())
+        level_of_key(self.cell()) + self.finer()
     }
 
     pub(super) fn kind(&self) -> u8 {
         (self.name & KIND) as u8
     }
 
-    pub(super) fn is_finer(&self) -> bool {
-        self.name >> KIND_BITS & 1 != 0
+    /// By how many levels its cell is smaller than what was asked at first.
+    pub(super) fn finer(&self) -> i32 {
+        (self.name >> KIND_BITS & FINER) as i32
     }
 
     pub(super) fn cell(&self) -> CellKey {
@@ -231,7 +235,13 @@ impl Bounce {
         let node = |(&name, &number): (&u64, &u32)| {
             let node = &self.nodes[number as usize];
             let values = node.values.map(|value| value.to_array());
-            SavedNode { name, place: place_of(&node.site.point), known: node.known as u8, values }
+            SavedNode {
+                name,
+                place: place_of(&node.site.point),
+                covered: node.covered,
+                known: node.known as u8,
+                values,
+            }
         };
         let mut nodes: Vec<SavedNode> = self.numbers.iter().map(node).filter(|node| node.known > 0).collect();
         nodes.sort_unstable_by_key(|node| node.name);
@@ -242,7 +252,7 @@ impl Bounce {
     fn restored(saved: &[SavedNode]) -> Bounce {
         let node = |node: &SavedNode| {
             let site = Site { point: point_at(node.place), level: node.level(), seed: node.seed() };
-            Node::new(site, node.known.into(), node.values.map(Vec3::from))
+            Node::new(site, node.covered, node.known.into(), node.values.map(Vec3::from))
         };
         let numbers = saved.iter().zip(0..).map(|(node, number)| (node.name, number));
         Bounce::with_nodes(numbers, saved.iter().map(node).collect())

@@ -116,20 +116,21 @@ DEVICE bool is_free(const Tally &tally, const Structure &structure, Vec3 origin,
     return !occluded(structure, tally, Ray{origin, normal, distance});
 }
 
-// Which of the candidates becomes the site: the first one that is not covered; the nearest if all are. Each lane has its own.
+// Which of the candidates becomes the site: the first one above which nothing is within this distance, in cells, or the nearest if all are covered;
+// `open` tells which. A single one may be taken for open. Each lane has its own.
 template <class Structure>
 DEVICE bool site_of_candidates(const Scene &scene, const Tally &tally, const Structure &structure, const Candidates &candidates,
-                               const Name &name, unsigned kind, Site &site) {
+                               const Name &name, unsigned kind, float distance, bool trust_single, Site &site, bool &open) {
     if (candidates.nearest[0] == NO_CANDIDATE)
         return false;
     const float size = size_of_level(name.level);
     const Vec3 middle = middle_of(bounds_of_name(name));
-    const bool single = candidates.nearest[1] == NO_CANDIDATE;
+    open = trust_single && candidates.nearest[1] == NO_CANDIDATE;
     SurfacePoint chosen = {};
     for (unsigned place = 0; place < SITE_CANDIDATES && candidates.nearest[place] != NO_CANDIDATE; ++place) {
         const Corners corners = corners_at(scene.triangles, (unsigned)candidates.nearest[place]);
         const SurfacePoint point = near_surface_point(near_of(middle, corners), corners, kind, size);
-        const bool open = single || is_free(tally, structure, point.origin, point.normal, SITE_OPEN * size);
+        open = open || is_free(tally, structure, point.origin, point.normal, distance * size);
         if (place == 0 || open)
             chosen = point;
         if (open)
@@ -176,8 +177,9 @@ DEVICE void place_sites(const Lookup &args, const Structure &structure) {
 
     // 2. A site of each, a lane for each kind. Ways to a site end above it: in what is thinner, such as a rug, they would lead past the cover.
     Site site = {};
+    bool open;
     const float raised = SITE_RAISED * SITE_RADIUS * size_of_level(name.level);
-    const bool has = lane < SURFACE_KINDS && site_of_candidates(args.scene, args.tally, structure, candidates[lane], name, lane, site) &&
+    const bool has = lane < SURFACE_KINDS && site_of_candidates(args.scene, args.tally, structure, candidates[lane], name, lane, SITE_OPEN, true, site, open) &&
                      is_free(args.tally, structure, site.origin, site.normal, raised);
     const unsigned lanes = __ballot_sync(ALL_LANES, has);
     unsigned first = 0;
@@ -224,11 +226,14 @@ DEVICE void place_nodes(const Bounce &args, const Structure &structure) {
     if (lane != 0)
         return;
     Site site = {};
-    const bool has = site_of_candidates(args.scene, args.fans.tally, structure, candidates, name, name.kind, site);
-    site.level = asking_level(name);
+    bool open = false;
+    const bool has = site_of_candidates(args.scene, args.fans.tally, structure, candidates, name, name.kind, NODE_OPEN, false, site, open);
+    // The smallest cells that its rays ask are those that were asked at first.
+    site.level = name.level + (int)name.finer;
     args.sites[node] = site;
     // Nothing arrives where no surface was found; all is known of that.
     Node placed = {};
     placed.known = placed.wanted = has ? 0u : ORDERS;
+    placed.covered = !open;
     args.nodes[node] = placed;
 }

@@ -11,7 +11,7 @@
 //! | 60 or 2112 each | values: the words of [`SurfaceLight`] or [`FarLight`] |
 //! | 8 | number of nodes |
 //! | 1 to 10, 1 each | their names, as the keys; how many values are known |
-//! | 1, 36 each | 1 if a surface was found there, else 0; if so, as of sites |
+//! | 1, 36 each | 0 if no surface was found there, 2 if it is covered, else 1; if it was found, as of sites |
 //! | 12 each | of those: the values that are known |
 
 use std::io::{self, Read, Write};
@@ -69,10 +69,10 @@ fn write_nodes(output: &mut impl Write, nodes: &[SavedNode]) -> io::Result<()> {
         before = node.name;
     }
     nodes.iter().try_for_each(|node| {
-        output.write_all(&[node.is_somewhere().into()])?;
         if !node.is_somewhere() {
-            return Ok(());
+            return output.write_all(&[0]);
         }
+        output.write_all(&[1 + u8::from(node.covered)])?;
         write_words(output, &node.place)?;
         node.values[..node.known.into()].iter().try_for_each(|value| write_words(output, value))
     })
@@ -121,9 +121,9 @@ impl<R: Read> Input<R> {
         let names = self.keys(END_OF_NAMES, ORDERS as u8)?;
         let mut nodes = Vec::new();
         for (name, known) in names {
-            let [is_somewhere] = self.bytes()?;
-            let mut node = SavedNode { name, known: known as u8, ..SavedNode::default() };
-            if is_somewhere != 0 {
+            let [state] = self.bytes()?;
+            let mut node = SavedNode { name, covered: state != 1, known: known as u8, ..SavedNode::default() };
+            if state != 0 {
                 node.place = self.place()?;
                 for value in &mut node.values[..known as usize] {
                     *value = self.words()?;

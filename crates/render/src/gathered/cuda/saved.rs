@@ -78,7 +78,7 @@ impl<R: Runtime> DeviceCells<R> {
 
     fn restored<V>(device: &Device<R>, saved: &SavedCells<V>) -> Result<DeviceCells<R>, RenderError> {
         let (pool, new) = (device.cuda.pool(), DeviceCells::new(device.cuda)?);
-        let name = |&(key, _): &(CellKey, u32)| name_of(key, key, 0, false);
+        let name = |&(key, _): &(CellKey, u32)| name_of(key, key, 0, 0);
         let mut first = 0;
         let range = |&(_, count): &(CellKey, u32)| {
             let range = u64::from(count) << 32 | first;
@@ -115,6 +115,7 @@ impl<R: Runtime> DeviceBounce<R> {
         let node = |((name, node), site): ((&Name, &Node), &Site)| SavedNode {
             name: name.key,
             place: place_of(site),
+            covered: node.covered != 0,
             known: node.known as u8,
             values: node.values.map(array_of),
         };
@@ -129,10 +130,10 @@ impl<R: Runtime> DeviceBounce<R> {
         let (pool, new) = (device.cuda.pool(), DeviceBounce::new(device.cuda)?);
         let node = |node: &SavedNode| {
             let (values, known) = (node.values.map(Vec3::from), node.known.into());
-            Node { values, known, wanted: known, ..Node::zeroed() }
+            Node { values, known, wanted: known, covered: node.covered.into(), ..Node::zeroed() }
         };
         let site = |node: &SavedNode| site_at(node.place, node.level(), node.seed());
-        let name = |node: &SavedNode| name_of(node.name, node.cell(), node.kind().into(), node.is_finer());
+        let name = |node: &SavedNode| name_of(node.name, node.cell(), node.kind().into(), node.finer() as u32);
         Ok(DeviceBounce {
             names: DeviceNames::restored(device, saved.iter().map(name).collect())?,
             nodes: pool.upload("nodes", &saved.iter().map(node).collect::<Vec<Node>>())?,
@@ -152,11 +153,11 @@ fn first_of<R: Runtime, T: Pod>(buffer: &Buffer<R, T>, count: usize) -> Result<V
 }
 
 /// A name with the index of its cell along each axis.
-fn name_of(key: u64, cell: CellKey, kind: u32, finer: bool) -> Name {
+fn name_of(key: u64, cell: CellKey, kind: u32, finer: u32) -> Name {
     let unused = i32::BITS - CELL_INDEX_BITS;
     // The highest bit of an index is its sign.
     let axis = |axis: u32| ((cell >> (axis * CELL_INDEX_BITS)) as i32) << unused >> unused;
-    Name { key, cell: [axis(0), axis(1), axis(2)], level: level_of_key(cell), kind, finer: finer.into() }
+    Name { key, cell: [axis(0), axis(1), axis(2)], level: level_of_key(cell), kind, finer }
 }
 
 fn site_at([position, origin, normal]: SavedPlace, level: i32, seed: u64) -> Site {

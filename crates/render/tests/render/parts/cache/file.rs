@@ -55,18 +55,18 @@ fn section(scene: &PreparedScene) -> Section {
 fn gathered(scene: &PreparedScene) -> SavedGathered {
     let place = [[1.0, -2.5, 1e-7], [1.0, -2.4, 0.0], [0.0, 1.0, 0.0]];
     let site = |(kind, has_value)| SavedSite { kind, has_value, place };
-    let cells = vec![(0, 1), (5 << 51, 3), ((255 << 51) - 1, 2)];
+    let cells = vec![(0, 1), (5 << 51, 3), ((127 << 51) - 1, 2)];
     let sites: Vec<SavedSite> = [(0, true), (1, false), (7, true), (11, false), (2, false), (3, true)].map(site).into();
     let node = |(name, known, place): (u64, u8, SavedPlace)| {
         let mut values = [[0.0; 3]; 12];
         let is_known = usize::from(known) * usize::from(place != SavedPlace::default());
         (1..).zip(&mut values[..is_known]).for_each(|(number, value)| *value = [number as f32; 3]);
-        SavedNode { name, place, known, values }
+        SavedNode { name, place, covered: name != 3, known, values }
     };
     let light = SavedLight {
         fine: SavedCells { cells: cells.clone(), sites: sites.clone(), values: vec![words(1); 3] },
         far: SavedCells { cells: cells[..1].into(), sites: sites[..1].into(), values: vec![words(2)] },
-        nodes: [(3, 1, place), (4 << 55, 12, Default::default()), ((255 << 56) - 1, 12, place)].map(node).into(),
+        nodes: [(3, 1, place), (4 << 55, 12, Default::default()), ((127 << 57) - 1, 12, place)].map(node).into(),
     };
     SavedGathered { geometry: scene.geometry.hash(), sources: 0x1234_5678_9abc_def0, light }
 }
