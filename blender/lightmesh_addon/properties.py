@@ -18,7 +18,7 @@ MODES = [
 AMBIENT = [
     ("AUTO", "Automatic", "Gathered if the world or lamps shine, else none"),
     ("CONSTANT", "Unshadowed", "What the world gives to a surface with nothing in between: fast"),
-    ("MESH", "Gathered", "From the world and from other surfaces, after up to four reflections"),
+    ("MESH", "Gathered", "From the world and from other surfaces, after up to fourteen reflections"),
     ("RAYS", "Gathered by Rays", "By thousands of rays from each surface point: slow"),
 ]
 #: Kept, because Blender does not keep the texts of items that a function returns.

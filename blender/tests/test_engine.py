@@ -109,7 +109,7 @@ def test_animation_of_objects_and_lights(tmp_path: Path) -> None:
     for frame, rgb in enumerate(frames, 1):
         np.testing.assert_array_equal(rgb, alone(frame))
     assert np.abs(frames[0] - frames[1]).mean() > 0.01 < np.abs(frames[1] - frames[2]).mean()
-    agreement("animation_frame_3", lightmesh(), cycles(bounces=4)).check(shadows=0.85)
+    agreement("animation_frame_3", lightmesh(), cycles(bounces=14)).check(shadows=0.85)
 
 
 def test_found_sun_stays(tmp_path: Path) -> None:

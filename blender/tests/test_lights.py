@@ -106,5 +106,5 @@ def test_all_kinds_and_a_panorama() -> None:
     rows = np.linspace(0.5, 0.02, 16)[:, None, None] * np.array((0.5, 0.7, 1.0))
     texture.image = image("sky", np.repeat(rows, 32, axis=1), is_float=True)
     nodes.links.new(texture.outputs["Color"], nodes.nodes["Background"].inputs["Color"])
-    # What surfaces gather of a world is reflected up to four times, so that Cycles' diffuse light is, too.
-    agreement("all_kinds", lightmesh(), cycles(bounces=4)).check()
+    # What surfaces gather of a world is reflected up to fourteen times, so that Cycles' diffuse light is, too.
+    agreement("all_kinds", lightmesh(), cycles(bounces=14)).check()

@@ -173,7 +173,7 @@ def test_emission_lights_the_scene() -> None:
     )
     camera()
     world()
-    agreement("emission", lightmesh(), cycles(samples=256, bounces=4)).check(ratio=0.04, difference=0.12, shadows=0.9)
+    agreement("emission", lightmesh(), cycles(samples=256, bounces=14)).check(ratio=0.04, difference=0.12, shadows=0.9)
 
 
 def test_glass() -> None:
