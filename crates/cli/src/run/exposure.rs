@@ -44,6 +44,8 @@ impl Metering {
                 *background = Some(Vec3::ZERO);
                 Some(Behind::Shown(shown))
             }
+            // Surroundings light the scene: they count, and catchers show them.
+            (Exposure::Auto, None) if background.is_none() && scene.lights.environment.is_some() => None,
             (Exposure::Auto, None) if has_ground && !is_transparent => {
                 let radiance = background.replace(Vec3::ZERO);
                 Some(Behind::Radiance(radiance.unwrap_or_default()))

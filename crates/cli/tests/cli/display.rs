@@ -171,6 +171,26 @@ fn an_automatic_exposure_is_that_of_the_model_on_a_ground() {
 }
 
 #[test]
+fn the_sky_over_a_ground_is_seen_beside_lamps() {
+    let place = place();
+    let lit = BALL
+        .replace("background = [0.2, 0.4, 0.8]\n", "")
+        .replace("intensity = 3\n", "intensity = 40\nfalloff = \"inverse-square\"\n");
+    place.write("lit.toml", &lit);
+    let corners = |flags: &[&str]| {
+        let base = ["render", "lit.toml", "-o", "a.png", "--size", "32x24", "--quality", "draft", "--sky", "clear"];
+        place.good(&[&base, flags].concat());
+        let frame = Frame::load(place.path("a.png")).unwrap();
+        [(0, 0), (0, 23)].map(|(x, y)| frame.pixel(x, y).unwrap())
+    };
+    let [sky, ground] = corners(&["--ground"]);
+    assert!(sky[2] > 0.02 && ground[0] > 0.02, "{sky:?} {ground:?}");
+    // A background that is asked for takes its place, and does not change the exposure.
+    let [red, _] = corners(&["--ground", "--background", "3000,0,0"]);
+    assert_eq!((red[0], red[2]), (1.0, 0.0));
+}
+
+#[test]
 fn the_ground_is_as_bright_at_any_exposure_that_is_set() {
     let place = place();
     place.write("bare.toml", &BALL.replace("background = [0.2, 0.4, 0.8]\n", ""));
