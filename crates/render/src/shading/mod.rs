@@ -115,8 +115,13 @@ impl Surface {
     /// The same if nothing else was there.
     #[inline(always)]
     pub(crate) fn alone(&self, ambient: &AmbientLight) -> Vec3 {
-        let reflected = if ambient.gathered.is_some() { self.coefficients.all } else { self.coefficients.ka };
-        ambient.at(self.normal) * reflected + self.coefficients.emission
+        let received = match (ambient.gathered, &ambient.terms) {
+            (None, _) => ambient.at(self.normal) * self.coefficients.ka,
+            (Some(_), Some(_)) => ambient.at(self.normal) * self.coefficients.all,
+            // Where nothing surrounds the scene, there is nothing to gather.
+            (Some(_), None) => Vec3::ZERO,
+        };
+        received + self.coefficients.emission
     }
 
     /// The same with the mean colour, and the mean of the normals, of the samples of its pixel that are shaded with it.

@@ -47,6 +47,19 @@ fn the_ground_shows_the_background_and_shadows_on_it() {
 }
 
 #[test]
+fn a_ground_that_nothing_surrounds_is_even_if_light_is_gathered() {
+    let mut scene = scene();
+    scene.lights.list.truncate(1);
+    scene.lights.list[0].falloff = lightmesh_scene::Falloff::InverseSquare;
+    let settings = Settings::default().with_size([40, 30]).with_samples(16).with_aa(1);
+    let frame = render(&scene, &settings.with_ambient_light(lightmesh_render::AmbientSource::Mesh));
+    for index in [0, 39, 29 * 40, 30 * 40 - 1] {
+        let corner = Vec3::from(frame.color()[index]);
+        assert!(corner.distance(BACKGROUND) < 1e-4, "{corner}");
+    }
+}
+
+#[test]
 fn what_is_transparent_gives_the_same_over_the_background() {
     let scene = scene();
     for settings in ways() {

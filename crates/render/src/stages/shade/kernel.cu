@@ -112,7 +112,9 @@ DEVICE void share_tint(const Shade &args, unsigned ray, Material &own) {
 // The light that a surface gets as a share of what it would get alone.
 DEVICE float lit_share(const Shade &args, const Surface &surface, Vec3 lit) {
     const float reach = scene_reach(args.scene, surface.point.origin);
-    Vec3 sum = alone(args.scene, surface, args.gathered != nullptr ? surface.material->all : surface.material->ka);
+    // Where nothing surrounds the scene, there is nothing to gather.
+    const Vec3 reflected = args.gathered == nullptr ? surface.material->ka : args.scene.environment.lights ? surface.material->all : splat(0.0f);
+    Vec3 sum = alone(args.scene, surface, reflected);
     for (unsigned light = 0; light < args.scene.light_count; ++light)
         sum = sum + unshadowed(surface, args.scene, light, reach);
     const float alone = luminance(sum);
