@@ -88,6 +88,11 @@ impl Scene {
     /// unless they are [chosen](crate::Lights::chosen); with lights inside, also an ambient term of 0.2 if none is set. Returns what
     /// was added.
     pub fn complete(&mut self, up: Up) -> Added {
+        self.complete_for(up, 1.0)
+    }
+
+    /// The same for images of this width, relative to their height: the camera that is added fills such an image.
+    pub fn complete_for(&mut self, up: Up, aspect: f32) -> Added {
         let mut added = Added {
             camera: self.cameras.is_empty(),
             lights: self.lights.are_missing(&self.geometry.mesh.bounds()),
@@ -98,7 +103,7 @@ impl Scene {
         let outline = LazyCell::new(|| geometry.mesh.outline(OUTLINE));
         let sight = LazyCell::new(|| Sight::new(&outline));
         if added.camera {
-            let (camera, viewpoint) = self.view(&sight, up);
+            let (camera, viewpoint) = self.view(&sight, up, aspect);
             self.cameras.push(camera);
             added.viewpoint = viewpoint;
         }
@@ -113,14 +118,19 @@ impl Scene {
         added
     }
 
-    /// A camera that shows the whole scene from the front, the right and above, for square images and wider ones. An interior (most of its
+    /// A camera that shows the whole scene from the front, the right and above, and fills a square image. An interior (most of its
     /// ground plan is in rooms, and from there it shows backs of walls or hardly anything) is instead seen through its open side if it has
     /// one, else from inside: at eye height, along the longest view, with a field of view of 60°.
     pub fn default_camera(&self, up: Up) -> Camera {
-        self.view(&Sight::new(&self.geometry.mesh.outline(OUTLINE)), up).0
+        self.default_camera_for(up, 1.0)
     }
 
-    fn view(&self, sight: &Sight, up: Up) -> (Camera, Viewpoint) {
+    /// The same for images of this width, relative to their height.
+    pub fn default_camera_for(&self, up: Up, aspect: f32) -> Camera {
+        self.view(&Sight::new(&self.geometry.mesh.outline(OUTLINE)), up, aspect).0
+    }
+
+    fn view(&self, sight: &Sight, up: Up, aspect: f32) -> (Camera, Viewpoint) {
         let mesh = sight.mesh();
         let bounds = framed(mesh.bounds());
         let (right, front) = sides(up);
@@ -134,7 +144,7 @@ impl Scene {
                 shift: Vec2::ZERO,
                 motion: None,
             };
-            camera.position = fitting(mesh, &bounds, &camera);
+            camera.position = fitting(mesh, &bounds, &camera, aspect);
             camera
         };
         let camera = from(-(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize());
@@ -192,20 +202,21 @@ fn sides(up: Up) -> (Vec3, Vec3) {
     }
 }
 
-/// Where a camera of this direction has to be so that all vertices fit in a square image, in its middle.
+/// Where a camera of this direction has to be so that all vertices fit in an image of this width, relative to its height, in its middle.
 ///
-/// In coordinates to the right, up and forward, with T the tangent of half the field of view, a point is left of the right border of a
+/// In coordinates to the right, up and forward, with T the tangent of half the field of view along an axis of the image, a point is left of the right border of a
 /// camera at c if `x - c.x <= T (z - c.z)`, so the largest `x - T z` of all points bounds `c.x - T c.z`; and so for each border. The
 /// two borders of an axis fix the camera's place across it, and the axis with the larger distance decides that.
-fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera) -> Vec3 {
+fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera, aspect: f32) -> Vec3 {
     let (right, up, forward) = camera.basis();
-    let tangent = FILL * (0.5 * VFOV).to_radians().tan();
+    let high = FILL * (0.5 * VFOV).to_radians().tan();
+    let wide = aspect * high;
     let center = bounds.center();
     let mut borders = [f32::NEG_INFINITY; 4];
     let mut include = |point: Vec3| {
         let point = point - center;
         let (x, y, z) = (point.dot(right), point.dot(up), point.dot(forward));
-        for (border, aside) in borders.iter_mut().zip([x, -x, y, -y]) {
+        for (border, (aside, tangent)) in borders.iter_mut().zip([(x, wide), (-x, wide), (y, high), (-y, high)]) {
             *border = border.max(aside - tangent * z);
         }
     };
@@ -215,7 +226,7 @@ fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera) -> Vec3 {
         (0..8).map(|i| corner(bounds, i)).for_each(include);
     }
     let [east, west, north, south] = borders;
-    let back = ((east + west).max(north + south) / (2.0 * tangent)).max(0.0);
+    let back = ((east + west) / (2.0 * wide)).max((north + south) / (2.0 * high)).max(0.0);
     center + 0.5 * (east - west) * right + 0.5 * (north - south) * up - back * forward
 }
 

@@ -43,6 +43,8 @@ pub(crate) struct SceneChoices {
     sky: Option<SkySpec>,
     environment: Option<EnvironmentSpec>,
     ground: bool,
+    /// Width of the image, relative to its height.
+    aspect: f32,
     budget: Budget,
 }
 
@@ -74,6 +76,7 @@ impl SceneChoices {
             sky: args.sky,
             environment: args.environment.clone(),
             ground: args.ground,
+            aspect: args.size.0[0] as f32 / args.size.0[1] as f32,
             budget: Budget::new(memory_limit),
         })
     }
@@ -105,7 +108,7 @@ impl SceneChoices {
         if let Some(Background::Color(Color(background))) = self.background {
             scene.lights.background = Some(background);
         }
-        let added = scene.complete(up);
+        let added = scene.complete_for(up, self.aspect);
         if added.camera {
             let from = match added.viewpoint {
                 Viewpoint::OpenSide => "looks into it through its open side",

@@ -29,7 +29,12 @@ fn extents_in_picture(points: &[Vec3], camera: &Camera) -> [f32; 4] {
 }
 
 fn assert_framed(points: &[Vec3], camera: &Camera) {
-    let extents = extents_in_picture(points, camera);
+    assert_framed_for(points, camera, 1.0);
+}
+
+fn assert_framed_for(points: &[Vec3], camera: &Camera, aspect: f32) {
+    let mut extents = extents_in_picture(points, camera);
+    extents[..2].iter_mut().for_each(|aside| *aside /= aspect);
     let most = extents.into_iter().fold(0.0, f32::max);
     assert!((most - FILL).abs() < 1e-3, "{extents:?}");
     // It fills the image from one border to the other.
@@ -48,6 +53,17 @@ fn all_corners_are_in_the_picture_and_fill_it() {
     for (min, max) in boxes {
         for up in [Up::Y, Up::Z] {
             assert_framed(&corners(Bounds { min, max }), &scene(min, max).default_camera(up));
+        }
+    }
+}
+
+#[test]
+fn pictures_of_any_shape_are_filled() {
+    let (min, max) = (Vec3::new(-3.0, 0.0, -1.0), Vec3::new(2.0, 2.0, 1.5));
+    for aspect in [0.25, 0.5, 1.0, 1.6, 4.0, 10.0] {
+        for up in [Up::Y, Up::Z] {
+            let camera = scene(min, max).default_camera_for(up, aspect);
+            assert_framed_for(&corners(Bounds { min, max }), &camera, aspect);
         }
     }
 }
