@@ -100,7 +100,7 @@ fn a_stale_or_damaged_file_is_replaced_with_a_warning() {
     let older =
         [&whole[..8], &2u32.to_le_bytes(), &whole[12..24], &[0x28, 0xb5, 0x2f, 0xfd, 0, 0x48, 1, 0, 0]].concat();
     std::fs::write(place.path("room.mesh"), older).unwrap();
-    assert!(replaced(&place, &lamp).contains("has format version 2, this program reads version 3"));
+    assert!(replaced(&place, &lamp).contains("has format version 2, this program reads version 4"));
     assert!(place.read("room.mesh") == whole);
     for length in [8, 30, whole.len() / 2, whole.len() - 1] {
         std::fs::write(place.path("room.mesh"), &whole[..length]).unwrap();
