@@ -133,6 +133,8 @@ constants! {
     F32_INFINITY_BITS: u32 = f32::INFINITY.to_bits();
     /// 2 π.
     TAU: f32 = std::f32::consts::TAU;
+    /// Half a turn.
+    PI: f32 = std::f32::consts::PI;
     /// 1 / π.
     FRAC_1_PI: f32 = std::f32::consts::FRAC_1_PI;
     /// The largest relative error of one operation in single precision, 2^-24.
@@ -183,6 +185,10 @@ constants! {
     ARC_TANGENT_3: f32 = -3.333_295e-1;
     /// A radian in turns.
     TURN_OF_RADIAN: f32 = 0.159_154_94;
+    /// The natural logarithm of 2.
+    LN_2: f32 = std::f32::consts::LN_2;
+    /// The bits of √½, where mantissas that logarithms are computed from start.
+    ROOT_OF_HALF_BITS: u32 = 0x3f35_04f3;
     /// If the square of twice its area is below this, a triangle's normal has lost its bits to underflow.
     LEAST_SQUARE: f32 = 1e-30;
     /// If the square of its length is below this, an interpolated normal has cancelled out.
@@ -293,6 +299,19 @@ constants! {
     LIGHT_TARGETS: u32 = 16;
     /// The height of the strip of an area light for which one of these points stands, relative to that of all of them.
     STRIP_OF_TARGET: f32 = 0.125;
+    /// Directional lights of a disc larger than this, at distance 1, are wide: the tangent of 1.5°. Up to there, the mean of a few points of the
+    /// disc is within 2e-4 of the light of the whole.
+    WIDE_SUN: f32 = 0.026_18;
+    /// A light is near in part from here on, as its size over its distance: up to there, the mean of a few of its points is within 0.003.
+    NEAR_LIGHT: f32 = 0.125;
+    /// Corners of a polygon that represents a disc.
+    DISC_CORNERS: u32 = 32;
+    /// The cosine of the angle between two of them,
+    CORNER_COSINE: f32 = 0.980_785_3;
+    /// its sine,
+    CORNER_SINE: f32 = 0.195_090_32;
+    /// and their distance from the centre, for the area of the disc.
+    CORNER_RADIUS: f32 = 1.003_222_1;
     /// First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
     MIX_1: u64 = 0xbf58_476d_1ce4_e5b9;
     /// Second factor.

@@ -40,6 +40,18 @@ records! {
         spacing: [f32; 2],
     }
 
+    /// What a surface point sees of the samples of a light that is near, by their weights.
+    Weighed {
+        /// Number of samples above the horizon.
+        above: u32,
+        /// Of those that are seen.
+        seen: u32,
+        /// The sum of the weights of all,
+        all: f32,
+        /// and of those that are seen.
+        lit: f32,
+    }
+
     /// `area_shadows`: one warp per 32 rays; `find_starts`: one warp per tile and light; `occluder_lists`: one warp per item; `sample_rays`:
     /// one thread per ray.
     Shadows {
@@ -62,6 +74,8 @@ records! {
         taken: Out<u32>,
         /// Share of each light by light, then ray; the number of samples seen until the last set.
         share: Out<f32>,
+        /// What is seen of lights that are near, by light, then ray, until the last set; null for a single set.
+        weighed: Out<Weighed>,
         /// How area lights are sampled.
         sampling: Sampling,
         /// Counts samples.
@@ -223,8 +237,8 @@ records! {
         sampled_pixels: u64,
         /// 1 if the scene has shadow catchers.
         catches: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// 1 if the shares of lights that are near or wide are those of what is above the horizon, by the weights of their samples.
+        weighed: u32,
     }
 
     /// `pixel_samples`, `count_ids`, `merge_samples`, `find_contrast`, `count_fragments` and `emit_fragments`: one thread per pixel of a camera's rows,

@@ -146,10 +146,12 @@ pub mod progress {
 
 pub mod shading {
     pub use crate::shading::dielectric::{exp_of_minus, fresnel, refracted};
-    pub use crate::shading::environment::{radiance, turns};
+    pub use crate::shading::environment::radiance;
     pub use crate::shading::facets::{Lobe, Sight};
+    pub use crate::shading::irradiance::{irradiance, nearness};
     pub use crate::shading::normal_map::{Relief, mirroring};
     pub use crate::shading::tint::Coefficients;
+    pub use crate::shading::turns::{angle, logarithm, turns};
     pub use crate::shading::{LightTargets, cone, strength};
 }
 

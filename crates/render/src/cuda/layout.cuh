@@ -52,6 +52,8 @@
 #define F32_INFINITY_BITS 0x7f800000u
 // 2 π.
 #define TAU 0x1.921fb6p2f
+// Half a turn.
+#define PI 0x1.921fb6p1f
 // 1 / π.
 #define FRAC_1_PI 0x1.45f306p-2f
 // The largest relative error of one operation in single precision, 2^-24.
@@ -96,6 +98,10 @@
 #define ARC_TANGENT_3 -0x1.555454p-2f
 // A radian in turns.
 #define TURN_OF_RADIAN 0x1.45f306p-3f
+// The natural logarithm of 2.
+#define LN_2 0x1.62e43p-1f
+// The bits of √½, where mantissas that logarithms are computed from start.
+#define ROOT_OF_HALF_BITS 0x3f3504f3u
 // If the square of twice its area is below this, a triangle's normal has lost its bits to underflow.
 #define LEAST_SQUARE 0x1.4484cp-100f
 // If the square of its length is below this, an interpolated normal has cancelled out.
@@ -197,6 +203,19 @@
 #define LIGHT_TARGETS 16u
 // The height of the strip of an area light for which one of these points stands, relative to that of all of them.
 #define STRIP_OF_TARGET 0x1p-3f
+// Directional lights of a disc larger than this, at distance 1, are wide: the tangent of 1.5°. Up to there, the mean of a few points of the
+// disc is within 2e-4 of the light of the whole.
+#define WIDE_SUN 0x1.aceeep-6f
+// A light is near in part from here on, as its size over its distance: up to there, the mean of a few of its points is within 0.003.
+#define NEAR_LIGHT 0x1p-3f
+// Corners of a polygon that represents a disc.
+#define DISC_CORNERS 32u
+// The cosine of the angle between two of them,
+#define CORNER_COSINE 0x1.f6297ep-1f
+// its sine,
+#define CORNER_SINE 0x1.8f8b84p-3f
+// and their distance from the centre, for the area of the disc.
+#define CORNER_RADIUS 0x1.00d32ap0f
 // First factor of the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 #define MIX_1 0xbf58476d1ce4e5b9ull
 // Second factor.
@@ -1553,6 +1572,18 @@ static_assert(PLACE_OF(GroupItems, tiles) == 824, "place of GroupItems::tiles");
 static_assert(PLACE_OF(GroupItems, first_block) == 832, "place of GroupItems::first_block");
 static_assert(PLACE_OF(GroupItems, spacing) == 840, "place of GroupItems::spacing");
 
+struct alignas(4) Weighed {
+    unsigned above;
+    unsigned seen;
+    float all;
+    float lit;
+};
+static_assert(sizeof(Weighed) == 16, "size of Weighed");
+static_assert(PLACE_OF(Weighed, above) == 0, "place of Weighed::above");
+static_assert(PLACE_OF(Weighed, seen) == 4, "place of Weighed::seen");
+static_assert(PLACE_OF(Weighed, all) == 8, "place of Weighed::all");
+static_assert(PLACE_OF(Weighed, lit) == 12, "place of Weighed::lit");
+
 struct alignas(8) Shadows {
     Scene scene;
     Rays rays;
@@ -1563,6 +1594,7 @@ struct alignas(8) Shadows {
     unsigned *starts;
     unsigned *taken;
     float *share;
+    Weighed *weighed;
     Sampling sampling;
     Tally tally;
     unsigned long long first;
@@ -1573,7 +1605,7 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 2224, "size of Shadows");
+static_assert(sizeof(Shadows) == 2232, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
 static_assert(PLACE_OF(Shadows, rays) == 664, "place of Shadows::rays");
 static_assert(PLACE_OF(Shadows, hits) == 784, "place of Shadows::hits");
@@ -1583,15 +1615,16 @@ static_assert(PLACE_OF(Shadows, tiles) == 808, "place of Shadows::tiles");
 static_assert(PLACE_OF(Shadows, starts) == 816, "place of Shadows::starts");
 static_assert(PLACE_OF(Shadows, taken) == 824, "place of Shadows::taken");
 static_assert(PLACE_OF(Shadows, share) == 832, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, sampling) == 840, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 856, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 864, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 872, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 880, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 2208, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 2212, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 2216, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 2220, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, weighed) == 840, "place of Shadows::weighed");
+static_assert(PLACE_OF(Shadows, sampling) == 848, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 864, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 872, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 880, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 888, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 2216, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 2220, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 2224, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 2228, "place of Shadows::end_light");
 
 struct alignas(8) Filters {
     Scene scene;
@@ -1602,14 +1635,14 @@ struct alignas(8) Filters {
     unsigned middle;
     unsigned spare;
 };
-static_assert(sizeof(Filters) == 2936, "size of Filters");
+static_assert(sizeof(Filters) == 2944, "size of Filters");
 static_assert(PLACE_OF(Filters, scene) == 0, "place of Filters::scene");
 static_assert(PLACE_OF(Filters, shadows) == 664, "place of Filters::shadows");
-static_assert(PLACE_OF(Filters, triangles) == 2888, "place of Filters::triangles");
-static_assert(PLACE_OF(Filters, normals) == 2912, "place of Filters::normals");
-static_assert(PLACE_OF(Filters, passed) == 2920, "place of Filters::passed");
-static_assert(PLACE_OF(Filters, middle) == 2928, "place of Filters::middle");
-static_assert(PLACE_OF(Filters, spare) == 2932, "place of Filters::spare");
+static_assert(PLACE_OF(Filters, triangles) == 2896, "place of Filters::triangles");
+static_assert(PLACE_OF(Filters, normals) == 2920, "place of Filters::normals");
+static_assert(PLACE_OF(Filters, passed) == 2928, "place of Filters::passed");
+static_assert(PLACE_OF(Filters, middle) == 2936, "place of Filters::middle");
+static_assert(PLACE_OF(Filters, spare) == 2940, "place of Filters::spare");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -1624,18 +1657,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 3344, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 3352, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
 static_assert(PLACE_OF(AdaptiveShadows, shadows) == 664, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2888, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2896, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2904, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2912, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2920, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2928, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2936, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3336, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 3340, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2896, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2904, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2912, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2920, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2928, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2936, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2944, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3344, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 3348, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;
@@ -1702,7 +1735,7 @@ struct alignas(8) Shade {
     unsigned first_sampled;
     unsigned long long sampled_pixels;
     unsigned catches;
-    unsigned spare;
+    unsigned weighed;
 };
 static_assert(sizeof(Shade) == 984, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
@@ -1735,7 +1768,7 @@ static_assert(PLACE_OF(Shade, sample_count) == 960, "place of Shade::sample_coun
 static_assert(PLACE_OF(Shade, first_sampled) == 964, "place of Shade::first_sampled");
 static_assert(PLACE_OF(Shade, sampled_pixels) == 968, "place of Shade::sampled_pixels");
 static_assert(PLACE_OF(Shade, catches) == 976, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, spare) == 980, "place of Shade::spare");
+static_assert(PLACE_OF(Shade, weighed) == 980, "place of Shade::weighed");
 
 struct alignas(8) PixelSamples {
     Scene scene;

@@ -20,12 +20,14 @@ pub struct Visibility {
     pub passed: Vec<Vec3>,
     /// Number of light points that each ray's surface point used; empty if the technique uses none.
     pub used: Vec<u32>,
+    /// Whether the shares of lights that are near or wide are those of what is above the horizon, by the weights of their samples.
+    pub weighed: bool,
 }
 
 impl Visibility {
     /// No visibility of the lights numbered `lights` from `rays` rays.
     pub(crate) fn dark(lights: Range<usize>, rays: usize) -> Visibility {
-        Visibility { rays, share: vec![0.0; lights.len() * rays], lights, passed: Vec::new(), used: Vec::new() }
+        Visibility { rays, share: vec![0.0; lights.len() * rays], lights, ..Visibility::default() }
     }
 
     /// The share of light number `light` that ray number `ray` sees.

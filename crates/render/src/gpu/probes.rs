@@ -49,6 +49,13 @@ impl<R: Runtime> DeviceVisibility<R> {
         let used = self.used.as_ref().map_or(Ok(Vec::new()), |used| used.read())?;
         let passed = self.passed.as_ref().map_or(Ok(Vec::new()), |passed| passed.read())?;
         let passed = bytemuck::cast_vec(passed);
-        Ok(Visibility { rays: self.rays, lights: self.lights.clone(), share: self.read()?, passed, used })
+        Ok(Visibility {
+            rays: self.rays,
+            lights: self.lights.clone(),
+            share: self.read()?,
+            passed,
+            used,
+            weighed: self.weighed,
+        })
     }
 }

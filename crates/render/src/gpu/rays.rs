@@ -50,6 +50,8 @@ pub struct DeviceVisibility<R: Runtime> {
     pub(crate) passed: Option<Buffer<R, Vec3>>,
     /// Number of light points used by each ray.
     pub(crate) used: Option<Buffer<R, u32>>,
+    /// As in [`Visibility`](crate::data::visibility::Visibility).
+    pub(crate) weighed: bool,
 }
 
 impl<R: Runtime> DeviceHits<R> {
@@ -73,7 +75,7 @@ impl<R: Runtime> DeviceVisibility<R> {
     /// No visibility of the lights numbered `lights`.
     pub(crate) fn dark(cuda: &Cuda<R>, rays: usize, lights: Range<usize>) -> Result<DeviceVisibility<R>, RenderError> {
         let share = cuda.pool().zeros("shares of lights", rays * lights.len())?;
-        Ok(DeviceVisibility { rays, lights, share, passed: None, used: None })
+        Ok(DeviceVisibility { rays, lights, share, passed: None, used: None, weighed: false })
     }
 
     /// Where the shares of light 0 would be: kernels find those of a light by its number.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "shading/tint.cuh"
+#include "shading/turns.cuh"
 
 // Texels of an environment.
 struct RadianceTexels {
@@ -17,21 +18,6 @@ DEVICE Vec3 radiance_at(const Environment &environment, Uv place, unsigned level
     const unsigned wrap[2] = {Texture::REPEAT, Texture::CLAMP};
     const EnvironmentLevel *of = environment.levels + level;
     return bilinear(RadianceTexels{of->texels}, __ldg(&of->size[0]), __ldg(&of->size[1]), wrap, place);
-}
-
-// The angle of the point (x, y), counted from the x axis, as a share of a whole turn, from -0.5 to 0.5; 0 for the origin.
-DEVICE float turns(float y, float x) {
-    const float along = fabsf(x), aside = fabsf(y);
-    const float low = aside > along ? along : aside, high = aside > along ? aside : along;
-    const float ratio = high > 0.0f ? low / high : 0.0f;
-    const bool large = ratio > TANGENT_OF_EIGHTH;
-    const float first = large ? EIGHTH_OF_TURN : 0.0f, tangent = large ? (ratio - 1.0f) / (ratio + 1.0f) : ratio;
-    const float square = tangent * tangent;
-    const float sum = ((ARC_TANGENT_9 * square + ARC_TANGENT_7) * square + ARC_TANGENT_5) * square + ARC_TANGENT_3;
-    const float eighth = first + TURN_OF_RADIAN * (tangent + tangent * (square * sum));
-    const float quarter = aside > along ? 0.25f - eighth : eighth;
-    const float half = x < 0.0f ? 0.5f - quarter : quarter;
-    return y < 0.0f ? -half : half;
 }
 
 // The mean radiance that a cone of this angle around `direction` sees, without the sun, which is a light.

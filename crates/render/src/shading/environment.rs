@@ -6,11 +6,10 @@
 //! 3. The sun is a disc with an edge as wide as the cone, and as much light.
 
 use glam::{Vec2, Vec3};
-use lightmesh_layout::constants::{
-    ARC_TANGENT_3, ARC_TANGENT_5, ARC_TANGENT_7, ARC_TANGENT_9, EIGHTH_OF_TURN, TANGENT_OF_EIGHTH, TURN_OF_RADIAN,
-};
+use lightmesh_layout::constants::TURN_OF_RADIAN;
 use lightmesh_scene::{Environment, Lights, Wrap};
 
+use super::turns::turns;
 use crate::data::wave::HostWave;
 use crate::textures::{between, bilinear, level_of};
 
@@ -78,20 +77,4 @@ fn without_sun(environment: &Environment, direction: Vec3, spread: f32) -> Vec3 
 
 fn sampled(size: [u32; 2], texels: &[[f32; 3]], place: Vec2) -> Vec3 {
     bilinear(size, [Wrap::Repeat, Wrap::Clamp], place, |index| Vec3::from_array(texels[index]))
-}
-
-/// The angle of the point (x, y), counted from the x axis, as a share of a whole turn, from −0.5 to 0.5; 0 for the origin.
-#[inline(always)]
-pub fn turns(y: f32, x: f32) -> f32 {
-    let (along, aside) = (x.abs(), y.abs());
-    let (low, high) = if aside > along { (along, aside) } else { (aside, along) };
-    let ratio = if high > 0.0 { low / high } else { 0.0 };
-    let (first, tangent) =
-        if ratio > TANGENT_OF_EIGHTH { (EIGHTH_OF_TURN, (ratio - 1.0) / (ratio + 1.0)) } else { (0.0, ratio) };
-    let square = tangent * tangent;
-    let sum = ((ARC_TANGENT_9 * square + ARC_TANGENT_7) * square + ARC_TANGENT_5) * square + ARC_TANGENT_3;
-    let eighth = first + TURN_OF_RADIAN * (tangent + tangent * (square * sum));
-    let quarter = if aside > along { 0.25 - eighth } else { eighth };
-    let half = if x < 0.0 { 0.5 - quarter } else { quarter };
-    if y < 0.0 { -half } else { half }
 }

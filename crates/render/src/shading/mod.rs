@@ -14,9 +14,11 @@ pub(crate) mod dielectric;
 pub(crate) mod environment;
 pub(crate) mod facets;
 pub(crate) mod ids;
+pub(crate) mod irradiance;
 pub(crate) mod normal_map;
 mod texel;
 pub(crate) mod tint;
+pub(crate) mod turns;
 
 use std::f32::consts::FRAC_1_PI;
 
@@ -35,6 +37,7 @@ use crate::surface::{SurfacePoint, shading_normal};
 use ambient::AmbientLight;
 use dielectric::{eta_seen, refracted};
 use facets::{Lobe, Sight};
+use irradiance::{irradiance, nearness};
 use normal_map::{Relief, has_relief, mapped_normal, mean_normal, mirroring, normal_at};
 use tint::{Coefficients, is_tinted};
 
@@ -189,7 +192,49 @@ impl Surface {
             }
             sum += self.arriving_from(light, place);
         }
-        Some(sum / points.len() as f32)
+        let mean = sum / points.len() as f32;
+        Some(mean + self.of_whole(light, points, reach))
+    }
+
+    /// By how much the light that arrives from all of a light that is near or wide differs from what its points say.
+    #[inline(always)]
+    fn of_whole(&self, light: &Light, points: &[Vec3], reach: f32) -> Vec3 {
+        let way = light_center(light, self.point.origin, reach) - self.point.position;
+        let share = nearness(light, way);
+        if share > 0.0 { share * self.beyond_points(light, points, reach, way) } else { Vec3::ZERO }
+    }
+
+    /// The same for all of its irradiance. What the image of normals and a spot's cone change is known from the points.
+    #[inline(never)]
+    fn beyond_points(&self, light: &Light, points: &[Vec3], reach: f32, way: Vec3) -> Vec3 {
+        let (mut arriving, mut plain) = (Vec3::ZERO, Vec3::ZERO);
+        for &target in points {
+            let place = self.place_of(light, target, reach);
+            arriving += self.arriving_from(light, place);
+            plain += self.arriving_plainly(light, place);
+        }
+        let whole = irradiance(light, way, self.normal) * light.intensity;
+        let shaped =
+            |arriving: f32, plain: f32, whole: f32| if plain > 0.0 { whole * (arriving / plain) } else { whole };
+        let whole = Vec3::new(
+            shaped(arriving.x, plain.x, whole.x),
+            shaped(arriving.y, plain.y, whole.y),
+            shaped(arriving.z, plain.z, whole.z),
+        );
+        whole - arriving / points.len() as f32
+    }
+
+    /// The light of `light` that arrives from `target`, times the cosine, without a cone or an image of normals.
+    #[inline(always)]
+    fn arriving_plainly(&self, light: &Light, target: Vec3) -> Vec3 {
+        let to_light = target - self.point.position;
+        let distance = to_light.length();
+        let cosine = self.normal.dot(to_light) / distance;
+        if cosine <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let emitted = light.surface.map_or(1.0, |_| cone(light, to_light / distance));
+        (cosine * emitted * falloff(light, distance)) * light.intensity
     }
 
     /// The same if all of it comes from `target`.
@@ -295,12 +340,17 @@ pub(crate) fn luminance(color: Vec3) -> f32 {
 /// Intensity of `light` at `distance` along `direction` (from the surface to the light), falloff and cone included.
 #[inline(always)]
 pub fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
-    let falloff = match (light.falloff, &light.kind) {
+    falloff(light, distance) * cone(light, direction) * light.intensity
+}
+
+/// What is left of a light at `distance`, over π where that is its unit.
+#[inline(always)]
+fn falloff(light: &Light, distance: f32) -> f32 {
+    match (light.falloff, &light.kind) {
         (Falloff::None, _) => 1.0,
         (Falloff::InverseSquare, LightKind::Directional { .. }) => FRAC_1_PI,
         (Falloff::InverseSquare, _) => FRAC_1_PI / (distance * distance),
-    };
-    falloff * cone(light, direction) * light.intensity
+    }
 }
 
 /// The share of a light's strength along `direction`, from the surface to the light. A spot's falls as glTF recommends (KHR_lights_punctual, inner
@@ -367,12 +417,23 @@ impl LightTargets {
     }
 
     /// The light of light number `index` that reaches the eye if `seen` is the share of the light that arrives. What is below the horizon is no
-    /// part of that share, nor of the [unshadowed light](Self::unshadowed), and must not be taken away twice.
+    /// part of that share, nor of the [unshadowed light](Self::unshadowed), and must not be taken away twice. Near a light whose samples were
+    /// `weighed`, it is the share of what is above the horizon.
     #[inline(always)]
-    pub(crate) fn shown(&self, surface: &Surface, light: &Light, index: usize, reach: f32, seen: Vec3) -> Vec3 {
+    pub(crate) fn shown(
+        &self,
+        surface: &Surface,
+        (light, index): (&Light, usize),
+        reach: f32,
+        (seen, weighed): (Vec3, bool),
+    ) -> Vec3 {
         // Of lights without light, such as the suns whose hours are counted, only what sees them matters.
         if light.intensity == Vec3::ZERO {
             return Vec3::ZERO;
+        }
+        let way = light_center(light, surface.point.origin, reach) - surface.point.position;
+        if weighed && light.has_size() && nearness(light, way) > 0.0 {
+            return seen * self.unshadowed(surface, light, index, reach);
         }
         let seen = (seen / self.above_horizon(surface, light, index, reach)).min(Vec3::ONE);
         seen * self.unshadowed(surface, light, index, reach)
@@ -404,7 +465,10 @@ impl LightTargets {
         let glint = Glint { part: PART_OF_LIGHT * size(light, reach), seen: self.seen[index] };
         match self.points[index].as_slice() {
             [] => surface.reflected(light, light_center(light, surface.point.origin, reach), glint),
-            points => surface.reflected_from_all(light, points, reach, glint),
+            points => {
+                let whole = surface.of_whole(light, points, reach);
+                surface.reflected_from_all(light, points, reach, glint) + whole * surface.coefficients.kd
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 
 #include "sampling.cuh"
 #include "shading/ambient.cuh"
+#include "shading/irradiance.cuh"
 #include "shading/tint.cuh"
 #include "surface.cuh"
 
@@ -59,12 +60,16 @@ DEVICE float cone(const Light &light, Vec3 direction) {
     return clamped * clamped;
 }
 
+// What is left of a light at `distance`, over pi where that is its unit.
+DEVICE float falloff(const Light &light, float distance) {
+    if (!light.inverse_square)
+        return 1.0f;
+    return light.kind == Light::DIRECTIONAL ? FRAC_1_PI : FRAC_1_PI / (distance * distance);
+}
+
 // Intensity of a light at `distance` along `direction` (from the surface to the light), falloff and cone included.
 DEVICE Vec3 strength(const Light &light, Vec3 direction, float distance) {
-    float falloff = 1.0f;
-    if (light.inverse_square)
-        falloff = light.kind == Light::DIRECTIONAL ? FRAC_1_PI : FRAC_1_PI / (distance * distance);
-    return falloff * cone(light, direction) * light.intensity;
+    return falloff(light, distance) * cone(light, direction) * light.intensity;
 }
 
 // Light of a light that reaches the eye if all of it comes from `target`: one term of the sum without V.
@@ -130,6 +135,42 @@ DEVICE Vec3 reflected_by_facets(const Surface &surface, const Light &light, Vec3
     return strength(light, direction, distance) * (soft * surface.material->kd + (soft * share) * lobe);
 }
 
+// The light of a light that arrives from `target`, times the cosine, without a cone or an image of normals.
+DEVICE Vec3 arriving_plainly(const Surface &surface, const Light &light, Vec3 target) {
+    const Vec3 to_light = target - surface.point.position;
+    const float distance = length(to_light);
+    const float cosine = dot(surface.normal, to_light) / distance;
+    if (!(cosine > 0.0f))
+        return splat(0.0f);
+    const float emitted = light.surface ? cone(light, to_light / distance) : 1.0f;
+    return cosine * emitted * falloff(light, distance) * light.intensity;
+}
+
+DEVICE float shaped(float arriving, float plain, float whole) { return plain > 0.0f ? whole * (arriving / plain) : whole; }
+
+// By how much the irradiance of a light that is near or wide differs from what its points say. What the image of normals and a spot's cone change is
+// known from the points. A function of its own, so that its callers keep their registers.
+COLD Vec3 beyond_points(Surface surface, const Scene &scene, unsigned index, float reach, Vec3 way) {
+    const Light &light = scene.lights[index];
+    Vec3 arriving = splat(0.0f), plain = splat(0.0f);
+    for (unsigned i = 0; i < LIGHT_TARGETS; ++i) {
+        const Vec3 place = place_of_target(surface, scene, index, i, reach);
+        arriving = arriving + arriving_from(surface, light, place);
+        plain = plain + arriving_plainly(surface, light, place);
+    }
+    Vec3 whole = irradiance(&light, way, surface.normal) * light.intensity;
+    whole = Vec3{shaped(arriving.x, plain.x, whole.x), shaped(arriving.y, plain.y, whole.y), shaped(arriving.z, plain.z, whole.z)};
+    return whole - arriving / (float)LIGHT_TARGETS;
+}
+
+// The same for the share of it that counts: none where the light is far.
+DEVICE Vec3 of_whole(const Surface &surface, const Scene &scene, unsigned index, float reach) {
+    const Light &light = scene.lights[index];
+    const Vec3 way = light_center(light, surface.point.origin, reach) - surface.point.position;
+    const float share = nearness(light, way);
+    return share > 0.0f ? share * beyond_points(surface, scene, index, reach, way) : splat(0.0f);
+}
+
 // Unshadowed light of light number `index` on a surface with facets. A function of its own, so that others keep their registers.
 COLD Vec3 unshadowed_by_facets(Surface surface, const Scene &scene, unsigned index, float reach) {
     const Light &light = scene.lights[index];
@@ -139,7 +180,7 @@ COLD Vec3 unshadowed_by_facets(Surface surface, const Scene &scene, unsigned ind
     Vec3 sum = splat(0.0f);
     for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
         sum = sum + reflected_by_facets(surface, light, place_of_target(surface, scene, index, i, reach), part);
-    return sum / (float)LIGHT_TARGETS;
+    return sum / (float)LIGHT_TARGETS + of_whole(surface, scene, index, reach) * surface.material->kd;
 }
 
 // Unshadowed light of light number `index`.
@@ -152,7 +193,7 @@ DEVICE Vec3 unshadowed(const Surface &surface, const Scene &scene, unsigned inde
     Vec3 sum = splat(0.0f);
     for (unsigned i = 0; i < LIGHT_TARGETS; ++i)
         sum = sum + reflected(surface, light, place_of_target(surface, scene, index, i, reach));
-    return sum / (float)LIGHT_TARGETS;
+    return sum / (float)LIGHT_TARGETS + of_whole(surface, scene, index, reach) * surface.material->kd;
 }
 
 // The share of light number `index` above the horizon; 1 of a light without an area, and where there is none. Each target stands for a strip.
@@ -179,12 +220,17 @@ DEVICE float above_horizon_of_targets(const Surface &surface, const Scene &scene
 }
 
 // The light of light number `index` that reaches the eye if `seen` is the share of the light that arrives. What is below the horizon is no part of
-// that share, nor of the unshadowed light, and must not be taken away twice.
-DEVICE Vec3 shown(const Surface &surface, const Scene &scene, unsigned index, float reach, Vec3 seen) {
+// that share, nor of the unshadowed light, and must not be taken away twice. Near a light whose samples were `weighed`, it is the share of what is
+// above the horizon.
+DEVICE Vec3 shown(const Surface &surface, const Scene &scene, unsigned index, float reach, Vec3 seen, bool weighed) {
     // Of lights without light, such as the suns whose hours are counted, only what sees them matters.
     const Vec3 intensity = scene.lights[index].intensity;
     if (intensity.x == 0.0f && intensity.y == 0.0f && intensity.z == 0.0f)
         return splat(0.0f);
+    const Light &light = scene.lights[index];
+    const Vec3 way = light_center(light, surface.point.origin, reach) - surface.point.position;
+    if (weighed && has_size(light) && nearness(light, way) > 0.0f)
+        return seen * unshadowed(surface, scene, index, reach);
     const Vec3 share = min(seen / above_horizon_of_targets(surface, scene, index, reach), splat(1.0f));
     return share * unshadowed(surface, scene, index, reach);
 }
@@ -202,7 +248,7 @@ DEVICE Vec3 arriving(const Surface &surface, const Scene &scene, unsigned index,
             return arriving_from(surface, light, to);
         sum = sum + arriving_from(surface, light, place);
     }
-    return sum / (float)LIGHT_TARGETS;
+    return sum / (float)LIGHT_TARGETS + of_whole(surface, scene, index, reach);
 }
 
 DEVICE Vec3 mirrored_about(Vec3 normal, Vec3 view) { return 2.0f * dot(normal, view) * normal - view; }

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
+use lightmesh_layout::Out;
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
-use lightmesh_layout::stages::Shadows;
+use lightmesh_layout::stages::{Shadows, Weighed};
 
 use super::Aim;
 use super::rows::Rows;
@@ -13,6 +14,7 @@ use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{Cuda, PerStructure, Work, sampling, warps_for};
+use crate::shading::irradiance::may_be_near;
 
 /// The samples of an image, set by set.
 pub(crate) struct SampleSets {
@@ -96,11 +98,22 @@ pub(crate) fn test_samples<R: Runtime>(
     complete: impl Fn(Shadows) -> Shadows,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let scene = wave.scene;
-    let visibility = DeviceVisibility::dark(cuda, wave.rays.len(), wave.group())?;
+    let dark = DeviceVisibility::dark(cuda, wave.rays.len(), wave.group())?;
+    let visibility = DeviceVisibility { weighed: true, ..dark };
     let sets = SampleSets::new(aim);
+    // What is seen of near lights by several sets.
+    let lights = &scene.host.scene.lights;
+    let sums = match sets.count > 1 && lights.iter().any(may_be_near) {
+        true => Some(cuda.pool().room::<Weighed>("weighed samples", wave.rays.len() * visibility.lights.len())?),
+        false => None,
+    };
+    let weighed = sums.as_ref().map_or(Out::NULL, |sums| {
+        let before = visibility.lights.start as u64 * wave.rays.len() as u64 * size_of::<Weighed>() as u64;
+        Out::to(sums.output().address().wrapping_sub(before))
+    });
     let progress = |done: u32| work.progress * u64::from(done) / u64::from(sets.count);
     for set in 0..sets.count {
-        let record = complete(sets.record(cuda, wave, &visibility, set)?);
+        let record = Shadows { weighed, ..complete(sets.record(cuda, wave, &visibility, set)?) };
         let most = |number: fn(&SampleRows) -> u32| record.sets.iter().map(number).max().unwrap_or(0);
         let (words, rows) = (most(|set| set.words), most(|set| set.rows));
         let (_, kernels) = kernels.iter().find(|(room, _)| *room >= words).unwrap_or(&kernels[2]);

@@ -8,6 +8,7 @@ pub(crate) mod rows;
 pub(crate) mod sample_ray;
 pub(crate) mod sight;
 pub(crate) mod terminator;
+pub(crate) mod weights;
 
 use glam::Vec3;
 use lightmesh_layout::constants::HORIZON_SAMPLES;

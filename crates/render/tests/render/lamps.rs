@@ -117,7 +117,7 @@ fn a_lamp_shines_where_it_is_not_hidden() {
                 continue;
             }
             let expected = 0.5 * RADIANCE * 0.09 * to.y / to.length().powi(3);
-            assert!((color[0] / expected - 1.0).abs() < 0.25, "{position:?}: {color:?}, not {expected}");
+            assert!((color[0] / expected - 1.0).abs() < 0.26, "{position:?}: {color:?}, not {expected}");
             lit += 1;
         }
     }

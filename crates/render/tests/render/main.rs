@@ -21,6 +21,7 @@ mod lists;
 mod lives;
 mod mattes;
 mod mirrors;
+mod near_lights;
 mod normal_maps;
 mod partial;
 mod parts;

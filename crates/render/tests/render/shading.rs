@@ -1,6 +1,6 @@
 //! Formula (1) with known answers: one pixel, on the camera's axis.
 
-use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, PI};
+use std::f32::consts::{FRAC_1_PI, PI};
 
 use glam::Vec3;
 use lightmesh_render::{Frame, Mode, Settings};
@@ -80,13 +80,33 @@ fn falloff_is_photometric_or_none() {
 }
 
 #[test]
-fn a_wide_sun_shines_from_all_of_its_disk() {
-    // The cosine averaged over a disk of radius 1 at distance 1; the light is represented by 16 points of it.
-    let sun = LightKind::Directional { direction: Vec3::NEG_Y, angle: FRAC_PI_2 };
-    let lit = |falloff| grey(|| floor(matt(1.0)).light_of(sun.clone(), 2.0, falloff));
-    let mean = 2.0 * (2f32.sqrt() - 1.0);
-    assert!((lit(Falloff::None) / (2.0 * mean) - 1.0).abs() < 0.01, "{}", lit(Falloff::None));
-    assert_near(lit(Falloff::InverseSquare), lit(Falloff::None) * FRAC_1_PI);
+fn a_wide_sun_is_as_strong_as_a_narrow_one() {
+    // On a floor that faces it, and at 45 degrees, where a part of a sun wider than 90 degrees is below the horizon.
+    let half = 0.5f32.sqrt();
+    for (degrees, aslant) in [
+        (0.0, half),
+        (0.53, half),
+        (5.0, half),
+        (30.0, half),
+        (60.0, half),
+        (90.0, half),
+        (120.0, 0.719_315),
+        (150.0, 0.764_557),
+        (179.0, 0.849_663),
+    ] {
+        let lit = |direction: Vec3, falloff| {
+            let sun = LightKind::Directional { direction, angle: f32::to_radians(degrees) };
+            grey(|| floor(matt(1.0)).light_of(sun.clone(), 2.0, falloff))
+        };
+        for (direction, expected) in [(Vec3::NEG_Y, 1.0), (Vec3::new(half, -half, 0.0), aslant)] {
+            if expected != 1.0 && degrees > 90.0 {
+                continue;
+            }
+            let found = lit(direction, Falloff::None);
+            assert!((found / (2.0 * expected) - 1.0).abs() < 0.005, "{degrees}, {direction}: {found}");
+            assert!((lit(direction, Falloff::InverseSquare) - found * FRAC_1_PI).abs() < ROUNDING * found);
+        }
+    }
 }
 
 #[test]

@@ -27,7 +27,7 @@ const BATCH: usize = 256;
 pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
     let rows = Rows::of(aim);
     let emitters = Emitter::all(wave, aim, &rows);
-    let mut visibility = Visibility::dark(wave.group(), wave.hits.len());
+    let mut visibility = Visibility { weighed: true, ..Visibility::dark(wave.group(), wave.hits.len()) };
     let level = Level::new();
     visibility.parts(BATCH).into_par_iter().enumerate().for_each(|(number, mut shares)| {
         let first = number * BATCH;
@@ -39,9 +39,8 @@ pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
                 for (emitter, shares) in emitters.iter().zip(&mut shares) {
                     let point = emitter.seen_from(&wave.scene.geometry, &point);
                     let sight = emitter.sight(wave, ray, &point);
-                    let seen =
-                        dispatch!(level, simd => seen(simd, wave, emitter, &point, &sight, &mut found, &mut asked));
-                    shares[ray - first] = emitter.share(seen);
+                    shares[ray - first] =
+                        dispatch!(level, simd => share(simd, wave, emitter, &point, &sight, &mut found, &mut asked));
                 }
             }
             Tally::add(&wave.job.tally.shadow_rays, asked);
@@ -58,9 +57,9 @@ fn search(wave: &HostWave, emitter: &Emitter, point: &SurfacePoint, found: &mut 
     geometry.accelerator.triangles_in(&emitter.region(geometry, &origin).above(planes), found);
 }
 
-/// The number of samples of an emitter that a surface point sees. Adds to `asked` how many are in front of the surface.
+/// The share of an emitter that a surface point sees. Adds to `asked` how many samples are in front of the surface.
 #[inline(always)]
-fn seen<S: Simd>(
+fn share<S: Simd>(
     simd: S,
     wave: &HostWave,
     emitter: &Emitter,
@@ -68,12 +67,12 @@ fn seen<S: Simd>(
     sight: &Sight,
     found: &mut Vec<u32>,
     asked: &mut u64,
-) -> u32 {
+) -> f32 {
     let sights = Sights::splat(simd, point, sight);
     let PreparedGeometry { triangles, coverage, .. } = &*wave.scene.geometry;
     if emitter.is_point() {
         if sights.center_above_horizon(simd).to_bitmask() & 1 == 0 {
-            return 0;
+            return 0.0;
         }
         *asked += 1;
         search(wave, emitter, point, found);
@@ -81,8 +80,9 @@ fn seen<S: Simd>(
             let held = (gathered(simd, triangles, indices), Cuts::gathered(coverage, triangles, indices));
             sights.hides_center(simd, held, 0xff) != 0
         };
-        return u32::from(!found.chunks(LANES).any(hidden));
+        return emitter.share(u32::from(!found.chunks(LANES).any(hidden)));
     }
+    let mut near = emitter.weighed(&wave.scene.geometry, point).filter(|weighed| weighed.nearness > 0.0);
     let mut searched = false;
     let mut count = 0;
     for set in emitter.sets {
@@ -101,9 +101,17 @@ fn seen<S: Simd>(
             let held = (gathered(simd, triangles, indices), Cuts::gathered(coverage, triangles, indices));
             sights.hide(simd, held, (set, &offsets), 0xff, &mut bits);
         }
-        count += words(&bits, set).map(u32::count_ones).sum::<u32>();
+        let left = words(&bits, set).map(u32::count_ones).sum::<u32>();
+        count += left;
+        if let Some(weighed) = &mut near {
+            weighed.count(unhidden, left);
+            if emitter.sets.len() > 1 || !weighed.is_plain() {
+                let bits: Vec<u32> = words(&bits, set).collect();
+                weighed.add(&emitter.weights(point, sight), sight, set, &bits);
+            }
+        }
     }
-    count
+    near.map_or_else(|| emitter.share(count), |weighed| weighed.share())
 }
 
 #[inline(always)]

@@ -12,6 +12,7 @@
 #include "cuda/tally.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/terminator.cuh"
+#include "shadow/weights.cuh"
 
 // The value of one lane.
 DEVICE Sight broadcast(const Sight &sight, unsigned lane) {
@@ -59,6 +60,23 @@ DEVICE void test_point(const Shadows &args, const Structure &structure, const Li
     }
 }
 
+// Adds what a lane sees of a light with this set of samples to its share.
+template <unsigned WORDS>
+DEVICE void add_share(const Shadows &args, unsigned light, unsigned ray, Shape shape, const SampleRows &set, const SurfacePoint &point,
+                      const Sight &sight, const RowTable &table, const Seen<WORDS> &seen, unsigned above) {
+    const Light &emitter = args.scene.lights[light];
+    const float near = nearness_of(args, shape, emitter, point);
+    const unsigned left = number(seen);
+    if (!(near > 0.0f)) {
+        add_seen(args, shape, light, ray, left);
+        return;
+    }
+    WeightSums sums = {0.0f, 0.0f};
+    if (!is_plain(args, above, left))
+        sums = weights_of<WORDS>(&emitter, point.normal, sight, &set, table, seen);
+    add_weighed(args, light, ray, near, Weighed{above, left, sums.all, sums.lit});
+}
+
 template <unsigned WORDS, class Structure>
 DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
@@ -93,7 +111,8 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
         const RowTable own = row_table(tables, shape, offsets + lane);
         Seen<WORDS> seen = seen_unhidden<WORDS>(has, point, sight, shape, set, own);
         __syncwarp();
-        count(tally_shard(args.tally).shadow_rays, number(seen));
+        const unsigned above = number(seen);
+        count(tally_shard(args.tally).shadow_rays, above);
         for (unsigned rest = __ballot_sync(ALL_LANES, any(seen)); rest != 0; rest &= rest - 1) {
             const unsigned owner = __ffs(rest) - 1;
             const SurfacePoint asked = {warp_broadcast(point.position, owner), warp_broadcast(point.origin, owner),
@@ -111,7 +130,7 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
             }
         }
         if (has)
-            add_seen(args, shape, light, ray, number(seen));
+            add_share<WORDS>(args, light, ray, shape, set, point, sight, own, seen, above);
         __syncwarp();
     }
 }

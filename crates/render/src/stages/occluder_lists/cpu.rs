@@ -22,6 +22,7 @@ use crate::shadow::rows::Rows;
 use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::sight::Emitter;
 use crate::shadow::terminator::ShadowPoint;
+use crate::shadow::weights::Weighed;
 use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
@@ -67,7 +68,7 @@ pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visib
     });
     // In the same memory.
     let share = shares.into_iter().map(|share| f32::from_bits(share.into_inner())).collect();
-    Visibility { rays, lights: wave.group(), share, ..Visibility::default() }
+    Visibility { rays, lights: wave.group(), share, weighed: true, ..Visibility::default() }
 }
 
 /// Writes the visible shares of all emitters from the surface points of some items.
@@ -84,9 +85,8 @@ fn shares_of_run<'a, S: Simd>(
         item.take(members);
         let lights = shares.chunks_exact(wave.hits.len());
         for ((number, emitter), shares) in emitters.iter().enumerate().zip(lights) {
-            let seen = item.seen(number, emitter);
-            for (&ray, &seen) in members.iter().zip(&seen) {
-                shares[ray as usize].store(emitter.share(seen).to_bits(), Ordering::Relaxed);
+            for (&ray, &share) in members.iter().zip(&item.shares(number, emitter)) {
+                shares[ray as usize].store(share.to_bits(), Ordering::Relaxed);
             }
         }
     }
@@ -179,23 +179,36 @@ impl<'a, S: Simd> Item<'a, S> {
         }
     }
 
-    /// How many samples of an emitter each surface point sees.
+    /// The share of an emitter that each surface point sees.
     #[inline(always)]
-    fn seen(&mut self, number: usize, emitter: &Emitter) -> [u32; WARP as usize] {
+    fn shares(&mut self, number: usize, emitter: &Emitter) -> [f32; WARP as usize] {
         self.place(emitter);
         let mut seen = [0; WARP as usize];
+        let mut near = self.near(emitter);
         if emitter.is_point() {
-            self.samples(&View { wave: self.wave, number, emitter, set: None }, &mut seen);
+            self.samples(&View { wave: self.wave, number, emitter, set: None }, &mut seen, &mut near);
         }
         for set in emitter.sets {
-            self.samples(&View { wave: self.wave, number, emitter, set: Some(set) }, &mut seen);
+            self.samples(&View { wave: self.wave, number, emitter, set: Some(set) }, &mut seen, &mut near);
         }
-        seen
+        let mut shares = seen.map(|seen| emitter.share(seen));
+        for (share, weighed) in shares.iter_mut().zip(&near).filter(|(_, weighed)| weighed.nearness > 0.0) {
+            *share = weighed.share();
+        }
+        shares
+    }
+
+    /// What each surface point sees of an emitter that is near to any of them; else nothing.
+    #[inline(always)]
+    fn near(&self, emitter: &Emitter) -> Vec<Weighed> {
+        let geometry = &self.wave.scene.geometry;
+        let near: Vec<Weighed> = self.points.iter().map_while(|point| emitter.weighed(geometry, point)).collect();
+        if near.iter().any(|weighed| weighed.nearness > 0.0) { near } else { Vec::new() }
     }
 
     /// Adds the samples that each surface point sees.
     #[inline(always)]
-    fn samples(&mut self, view: &View, seen: &mut [u32; WARP as usize]) {
+    fn samples(&mut self, view: &View, seen: &mut [u32; WARP as usize], near: &mut [Weighed]) {
         // 1. The samples in front of the surface.
         let mut lanes = 0;
         for (number, group) in self.groups.iter_mut().enumerate() {
@@ -207,6 +220,13 @@ impl<'a, S: Simd> Item<'a, S> {
         self.asked += u64::from(before);
         if lanes == 0 {
             return;
+        }
+        let mut above = [0; WARP as usize];
+        if !near.is_empty() {
+            self.groups
+                .iter()
+                .zip(above.chunks_mut(LANES))
+                .for_each(|(group, above)| above.copy_from_slice(&group.seen(view)));
         }
         // 2. Search.
         self.look_around(lanes);
@@ -227,6 +247,11 @@ impl<'a, S: Simd> Item<'a, S> {
         });
         for (group, seen) in self.groups.iter().zip(seen.chunks_mut(LANES)) {
             seen.iter_mut().zip(group.seen(view)).for_each(|(seen, more)| *seen += more);
+        }
+        // 6. What samples count near a light.
+        for (number, (near, above)) in near.chunks_mut(LANES).zip(above.chunks(LANES)).enumerate() {
+            let from = number * LANES;
+            self.groups[number].weigh(simd, view, (&self.members[from..], &self.points[from..]), above, near);
         }
     }
 

@@ -13,6 +13,7 @@ use crate::shadow::cuts::Cuts;
 use crate::shadow::occlusion::{Bits, Offsets, Sights};
 use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::sight::{Emitter, Sight};
+use crate::shadow::weights::Weighed;
 use crate::simd::{Axes, LANES};
 use crate::surface::SurfacePoint;
 
@@ -211,6 +212,34 @@ impl<S: Simd> Group<S> {
             *bits = u32x8::from_slice(simd, seen);
         }
         self.lanes = lanes_of(simd, &self.bits, set);
+    }
+
+    /// Adds what the points that are `near` see: of the samples of a single set their weights, unless all or none of those `above` are seen.
+    #[inline(always)]
+    pub(super) fn weigh(
+        &mut self,
+        simd: S,
+        view: &View,
+        (rays, points): (&[u32], &[SurfacePoint]),
+        above: &[u32],
+        near: &mut [Weighed],
+    ) {
+        let (Some(set), seen) = (view.set, self.seen(view)) else { return };
+        for (lane, weighed) in near.iter_mut().enumerate().filter(|(_, weighed)| weighed.nearness > 0.0) {
+            weighed.count(above[lane], seen[lane]);
+            if view.emitter.sets.len() == 1 && weighed.is_plain() {
+                continue;
+            }
+            if !self.looked {
+                self.look(simd, view, rays, points);
+            }
+            let mut bits = [0; MOST_WORDS as usize];
+            if self.lanes != 0 {
+                bits.iter_mut().zip(&self.bits).for_each(|(bits, word)| *bits = <[u32; LANES]>::from(*word)[lane]);
+            }
+            let sight = &self.sight[lane];
+            weighed.add(&view.emitter.weights(&points[lane], sight), sight, set, &bits);
+        }
     }
 
     /// The number of samples that each lane sees.

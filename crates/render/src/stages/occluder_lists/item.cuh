@@ -6,6 +6,7 @@
 #include "cuda/tally.cuh"
 #include "shadow/sample_ray.cuh"
 #include "shadow/terminator.cuh"
+#include "shadow/weights.cuh"
 #include "stages/occluder_lists/candidates.cuh"
 
 // What steps cost, in 64ths of that of a ray at a node; as on the CPU, see cpu.rs.
@@ -241,23 +242,24 @@ DEVICE unsigned *starts_of(const Shadows &args, unsigned long long tile, unsigne
     return args.starts + (tile * (args.end_light - args.first_light) + light - args.first_light) * (MOST_STARTS + 1);
 }
 
-// The number of samples of a light that each lane sees; `tile` is that of the item.
+// The samples of a light that each lane sees; `tile` is that of the item, and `above` becomes the number of those in front of the surface.
 template <unsigned WORDS, class Structure>
-DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, ItemSight &item, unsigned tile, unsigned light,
-                              const SampleRows &set, const ListMemory &memory) {
+DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure, ItemSight &item, unsigned tile, unsigned light,
+                              const SampleRows &set, const ListMemory &memory, unsigned &above) {
     // 1. The samples in front of the surface.
     const RowTable table = row_table(memory.tables, item.shape, memory.offsets);
     Seen<WORDS> seen = unhidden<WORDS>(args, item, light, set, table);
     const bool alive = any(seen);
+    above = number(seen);
     if (!__any_sync(ALL_LANES, alive))
-        return 0;
-    item.asked += number(seen);
+        return seen;
+    item.asked += above;
 
     // 2. Search.
     const unsigned *starts = starts_of(args, tile, light);
     const unsigned start_count = __ldg(starts);
     if (start_count == 0)
-        return number(seen);
+        return seen;
     if (start_count != FROM_ROOT)
         ROLLED
         for (unsigned start = lane_of_thread(); start < start_count; start += WARP)
@@ -273,7 +275,6 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
         *memory.shaft = shaft_of(origins, bounds, ball ? emitter.radius : INFINITE);
     __syncwarp();
     auto search = begin_search_at(structure, region, memory.search, memory.starts, start_count);
-    const unsigned before = number(seen);
     unsigned found = 0, spent = 0, check = FIRST_CHECK;
     ROLLED
     while (goes_on(structure, search) || found != 0) {
@@ -287,7 +288,7 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
         // 3, 4. Candidates, and what they hide.
         unsigned tested;
         if (!test_found(args, item, light, set, table, region, structure, memory, found, count, tested, seen))
-            return 0;
+            return Seen<WORDS>{};
         __syncwarp();
         if constexpr (HAS_RAYS<Structure>) {
             // 5. Rays instead of the rest.
@@ -295,13 +296,33 @@ DEVICE unsigned seen_of_light(const Shadows &args, const Structure &structure, I
             if (spent < check || item.shape == SHAPE_POINT)
                 continue;
             check = 2 * spent;
-            if (!rays_are_cheaper(spent, before, seen))
+            if (!rays_are_cheaper(spent, above, seen))
                 continue;
             look_at_rows(args, item, light, set, table);
-            return number(rays_instead<WORDS>(structure, emitter.scale, item.point, item.sight, table, seen));
+            return rays_instead<WORDS>(structure, emitter.scale, item.point, item.sight, table, seen);
         }
     }
-    return number(seen);
+    return seen;
+}
+
+// 6. What samples count near a light: adds a lane's to its share.
+template <unsigned WORDS>
+DEVICE void add_share(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const ListMemory &memory,
+                      const Seen<WORDS> &seen, unsigned above) {
+    const Light &emitter = args.scene.lights[light];
+    const float near = item.has ? nearness_of(args, item.shape, emitter, item.point) : 0.0f;
+    const unsigned left = number(seen);
+    const bool weighs = near > 0.0f && !is_plain(args, above, left);
+    const RowTable table = row_table(memory.tables, item.shape, memory.offsets);
+    if (__any_sync(ALL_LANES, weighs))
+        look_at_rows(args, item, light, set, table);
+    WeightSums sums = {0.0f, 0.0f};
+    if (weighs)
+        sums = weights_of<WORDS>(&emitter, item.point.normal, item.sight, &set, table, seen);
+    if (near > 0.0f)
+        add_weighed(args, light, item.ray, near, Weighed{above, left, sums.all, sums.lit});
+    else if (item.has)
+        add_seen(args, item.shape, light, item.ray, left);
 }
 
 // Places the surface points where a light is looked for.
@@ -346,9 +367,9 @@ DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure,
         if (item.shape == SHAPE_POINT && args.set != 0)
             continue;
         place(args, item, light, memory);
-        const unsigned seen = seen_of_light<WORDS>(args, structure, item, (unsigned)(slot / TILE), light, set, memory);
-        if (item.has)
-            add_seen(args, item.shape, light, item.ray, seen);
+        unsigned above;
+        const Seen<WORDS> seen = seen_of_light<WORDS>(args, structure, item, (unsigned)(slot / TILE), light, set, memory, above);
+        add_share<WORDS>(args, item, light, set, memory, seen, above);
         __syncwarp();
     }
     return item.asked;

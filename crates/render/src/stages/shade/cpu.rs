@@ -98,7 +98,8 @@ fn add_group(
     for index in visibility.lights.clone() {
         if visibility.of(index, ray) > 0.0 {
             let light = &wave.lights()[index];
-            *radiance += targets.shown(&surface, light, index, reach, visibility.color(index, ray));
+            *radiance +=
+                targets.shown(&surface, (light, index), reach, (visibility.color(index, ray), visibility.weighed));
         }
     }
 }
@@ -179,7 +180,7 @@ fn by_light(
     for (index, term) in lights.zip(terms) {
         if visibility.of(index, ray) > 0.0 {
             let light = &wave.lights()[index];
-            *term = targets.shown(&surface, light, index, reach, visibility.color(index, ray));
+            *term = targets.shown(&surface, (light, index), reach, (visibility.color(index, ray), visibility.weighed));
         }
     }
 }

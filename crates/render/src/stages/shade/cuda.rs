@@ -44,6 +44,7 @@ pub(crate) fn shade<R: Runtime>(
         end_light: lights.end as u32,
         several: u32::from(rays.several),
         catches: u32::from(catches),
+        weighed: u32::from(visibility.weighed),
         ..Shade::zeroed()
     };
     film.expose(rays, &mut record);

@@ -74,7 +74,7 @@ DEVICE Vec3 add_group(const Shade &args, unsigned ray, const Surface &surface, V
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         if (share_of(args, light, ray) > 0.0f)
-            radiance = radiance + shown(surface, args.scene, light, reach, color_of(args, light, ray));
+            radiance = radiance + shown(surface, args.scene, light, reach, color_of(args, light, ray), args.weighed);
     }
     return radiance;
 }
@@ -238,7 +238,7 @@ DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long pla
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         if (share_of(args, light, ray) > 0.0f)
-            add_to_group(args, light, place, weight * shown(surface, args.scene, light, reach, color_of(args, light, ray)));
+            add_to_group(args, light, place, weight * shown(surface, args.scene, light, reach, color_of(args, light, ray), args.weighed));
     }
 }
 

@@ -1,21 +1,6 @@
 use glam::Vec3;
-use lightmesh_render::internals::shading::{radiance, turns};
+use lightmesh_render::internals::shading::radiance;
 use lightmesh_scene::{Environment, Sun, Up};
-
-#[test]
-fn turns_are_arc_tangents() {
-    let mut worst = 0.0f64;
-    for step in 0..10_000 {
-        let angle = f64::from(step - 5000) * std::f64::consts::TAU / 10_001.0;
-        let (sin, cos) = angle.sin_cos();
-        let (y, x) = ((7.0 * sin) as f32, (7.0 * cos) as f32);
-        let expected = f64::from(y).atan2(f64::from(x)) / std::f64::consts::TAU;
-        worst = worst.max((f64::from(turns(y, x)) - expected).abs());
-    }
-    assert!(worst < 1e-7, "{worst}");
-    assert_eq!([turns(0.0, 0.0), turns(0.0, 1.0), turns(1.0, 0.0), turns(-1.0, 0.0)], [0.0, 0.0, 0.25, -0.25]);
-    assert_eq!(turns(0.0, -1.0), 0.5);
-}
 
 fn panorama(size: [u32; 2]) -> Environment {
     let texels = (0..size[0] * size[1]).map(|index| [index as f32, (index % size[0]) as f32, 1.0]).collect();
