@@ -95,7 +95,7 @@ class Scene:
         lines += ["[[material]]", 'name = "grey"', f"kd = {row([KD] * 3)}", "ks = [0, 0, 0]"]
         lines += ["[[mesh]]", f'file = "{ply.name}"', 'material = "grey"']
         for light in self.lights:
-            lines += ["[[light]]", 'kind = "rectangle"', 'falloff = "inverse-square"', f"position = {row(light.position)}"]
+            lines += ["[[light]]", 'kind = "rectangle"', "one_sided = false", 'falloff = "inverse-square"', f"position = {row(light.position)}"]
             lines += [f"u = {row(light.u)}", f"v = {row(light.v)}", f"intensity = {row([light.intensity] * 3)}"]
         self.file.write_text("\n".join(lines) + "\n")
 

@@ -150,14 +150,15 @@ impl Light {
         Common { intensity, falloff, name }.of(light, position.0)
     }
 
-    /// A flat round light. It shines evenly to all sides; `one_sided`, like a surface: along `normal` with `intensity`, aside with the cosine.
+    /// A flat round light. It shines like a surface: along `normal` with `intensity`, aside with the cosine. Not `one_sided`: evenly to all
+    /// sides.
     #[staticmethod]
     #[pyo3(
         signature = (
-            position, normal, radius, *, one_sided = false, intensity = None, falloff = String::from("none"),
+            position, normal, radius, *, one_sided = true, intensity = None, falloff = String::from("none"),
             name = String::new()
         ),
-        text_signature = "(position, normal, radius, *, one_sided=False, intensity=1.0, falloff='none', name='')"
+        text_signature = "(position, normal, radius, *, one_sided=True, intensity=1.0, falloff='none', name='')"
     )]
     fn disk(
         position: Vector,
@@ -169,20 +170,18 @@ impl Light {
         name: String,
     ) -> PyResult<Light> {
         let light = scene::Light::disk(Vec3::ZERO, normal.0.as_vec3(), radius).or_raise()?;
-        let LightKind::Disk { normal, .. } = light.kind else { unreachable!("it was made as a disk") };
-        let light = if one_sided { light.with_surface(normal) } else { light };
-        Common { intensity, falloff, name }.of(light, position.0)
+        Common { intensity, falloff, name }.of(light.with_one_sided(one_sided), position.0)
     }
 
     /// A flat rectangular light: `half_u` and `half_v`, at a right angle, point from its centre to the middles of two sides.
-    /// `one_sided`: towards half_u × half_v.
+    /// It shines like a surface, towards half_u × half_v. Not `one_sided`: evenly to all sides.
     #[staticmethod]
     #[pyo3(
         signature = (
-            position, half_u, half_v, *, one_sided = false, intensity = None, falloff = String::from("none"),
+            position, half_u, half_v, *, one_sided = true, intensity = None, falloff = String::from("none"),
             name = String::new()
         ),
-        text_signature = "(position, half_u, half_v, *, one_sided=False, intensity=1.0, falloff='none', name='')"
+        text_signature = "(position, half_u, half_v, *, one_sided=True, intensity=1.0, falloff='none', name='')"
     )]
     fn rectangle(
         position: Vector,
@@ -195,8 +194,7 @@ impl Light {
     ) -> PyResult<Light> {
         let (u, v) = (half_u.0.as_vec3(), half_v.0.as_vec3());
         let light = scene::Light::rectangle(Vec3::ZERO, u, v).or_raise()?;
-        let light = if one_sided { light.with_surface(half_u.0.cross(half_v.0).normalize().as_vec3()) } else { light };
-        Common { intensity, falloff, name }.of(light, position.0)
+        Common { intensity, falloff, name }.of(light.with_one_sided(one_sided), position.0)
     }
 
     /// `point`, `directional`, `spot`, `sphere`, `disk` or `rectangle`.

@@ -469,7 +469,7 @@ impl PreparedScene {
 
     /// Whether lights stand for what lamps emit.
     pub(crate) fn has_lamps(&self) -> bool {
-        self.scene.lights.iter().any(|light| light.surface.is_some())
+        self.scene.lights.iter().any(|light| light.lamp)
     }
 
     /// The same geometry under other lights. Their positions are in the geometry's local frame.

@@ -110,11 +110,6 @@ impl SceneBuilder {
         (is_one && first == last && !starts.is_empty()).then(|| self.objects.name(first))
     }
 
-    /// The materials of some triangles.
-    pub(crate) fn materials_of(&self, triangles: Range<usize>) -> &[u32] {
-        &self.materials[triangles]
-    }
-
     /// Number of places of shapes so far.
     pub(crate) fn place_count(&self) -> usize {
         self.shapes.placed.len()

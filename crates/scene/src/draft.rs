@@ -243,7 +243,7 @@ impl Draft {
     }
 
     /// Adds a shape that is nowhere until it is [placed](Draft::place): `add` adds its parts as they are without a place, in reverse order of
-    /// corners for places that mirror. `None` if it cannot be in many places, for it shines, has cameras or lights, or parts of
+    /// corners for places that mirror. `None` if it cannot be in many places, for it has cameras or lights, or parts of
     /// it move.
     pub(crate) fn shape(
         &mut self,
@@ -260,8 +260,6 @@ impl Draft {
         if mirrored {
             self.builder.reverse(shape.clone());
         }
-        let shines = |&material: &u32| self.materials.get(material as usize).is_some_and(lamps::may_be_lamp);
-        let is_dark = !self.builder.materials_of(shape.clone()).iter().any(shines);
         let without_uvs = std::mem::replace(&mut self.without_uvs, own);
         self.shapes_without_uvs.extend(without_uvs);
         self.mover = mover;
@@ -269,7 +267,7 @@ impl Draft {
         self.cameras.truncate(views.0);
         self.lights.truncate(views.1);
         self.builder.exchange_shapes(&mut self.beside_shape);
-        let can_be_placed = is_dark && !has_views && !self.shape_moves && !shape.is_empty();
+        let can_be_placed = !has_views && !self.shape_moves && !shape.is_empty();
         added.map(|()| can_be_placed.then_some(shape))
     }
 

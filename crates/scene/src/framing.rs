@@ -84,7 +84,7 @@ pub enum Viewpoint {
 
 impl Scene {
     /// Completes the scene so that it can be rendered: adds [`Scene::default_camera`] if it has no camera, and
-    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light, or only lamps too faint to light it,
+    /// [`Scene::default_lights`], placed relative to its first camera, if it has no light and nothing in it emits any,
     /// unless they are [chosen](crate::Lights::chosen); with lights inside, also an ambient term of 0.2 if none is set. Returns what
     /// was added.
     pub fn complete(&mut self, up: Up) -> Added {
@@ -95,7 +95,7 @@ impl Scene {
     pub fn complete_for(&mut self, up: Up, aspect: f32) -> Added {
         let mut added = Added {
             camera: self.cameras.is_empty(),
-            lights: self.lights.are_missing(&self.geometry.mesh.bounds()),
+            lights: self.lights.are_missing(&self.geometry),
             ..Added::default()
         };
         // Needed for what is missing alone, and once for both.

@@ -91,6 +91,9 @@ pub struct LightInfo {
     /// Of a directional light that comes from a disk: its angular diameter, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
+    /// Of a disk or rectangle: whether it shines to the side of its direction only, and aside with the cosine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub one_sided: Option<bool>,
     /// Of a rectangle: its edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<[f64; 2]>,
@@ -169,6 +172,7 @@ fn light_info(scene: &Scene, light: &Light) -> LightInfo {
         radius: None,
         spread: None,
         angle: None,
+        one_sided: None,
         size: None,
         inner: None,
         outer: None,
@@ -187,11 +191,14 @@ fn light_info(scene: &Scene, light: &Light) -> LightInfo {
         }
         LightKind::Sphere { radius, .. } => info.radius = Some(shortest(radius)),
         LightKind::Disk { normal, radius, .. } => {
-            info.direction = Some(normal.to_array().map(shortest));
+            info.direction = Some(light.surface.unwrap_or(normal).to_array().map(shortest));
+            info.one_sided = Some(light.surface.is_some());
             info.radius = Some(shortest(radius));
         }
         LightKind::Rectangle { half_u, half_v, .. } => {
-            info.direction = Some(half_u.cross(half_v).normalize_or_zero().to_array().map(shortest));
+            let normal = light.surface.unwrap_or_else(|| half_u.cross(half_v).normalize_or_zero());
+            info.direction = Some(normal.to_array().map(shortest));
+            info.one_sided = Some(light.surface.is_some());
             info.size = Some([half_u, half_v].map(|half| shortest(2.0 * half.length())));
         }
     }
@@ -288,7 +295,10 @@ impl fmt::Display for LightInfo {
         for (word, number) in numbers.iter().filter_map(|(word, number)| Some((word, (*number)?))) {
             write!(f, ", {word} {}", rounded(number))?;
         }
-        self.size.map_or(Ok(()), |[w, h]| write!(f, ", size {} × {}", rounded(w), rounded(h)))
+        if let Some([w, h]) = self.size {
+            write!(f, ", size {} × {}", rounded(w), rounded(h))?;
+        }
+        if self.one_sided == Some(false) { f.write_str(", to both sides") } else { Ok(()) }
     }
 }
 

@@ -83,7 +83,7 @@ pub enum LightKind {
         /// Its radius, above 0.
         radius: f32,
     },
-    /// A flat round light. It emits to both sides, equally in all directions, like the many point lights that it represents.
+    /// A flat round light. Whether it shines like a surface, or evenly in all directions, is said by [`Light::surface`].
     Disk {
         /// Its centre.
         position: Vec3,
@@ -92,7 +92,7 @@ pub enum LightKind {
         /// Its radius, above 0.
         radius: f32,
     },
-    /// A flat rectangular light that emits like [`LightKind::Disk`].
+    /// A flat rectangular light. Whether it shines like a surface, or evenly in all directions, is said by [`Light::surface`].
     Rectangle {
         /// Its centre.
         position: Vec3,
@@ -115,9 +115,13 @@ pub struct Light {
     pub intensity: Vec3,
     /// How distance attenuates it.
     pub falloff: Falloff,
-    /// If it stands for an emissive surface: the unit normal on the side that shines. Its strength falls with the cosine (Lambert), and
-    /// `intensity` is that along the normal. `None`: it shines evenly.
+    /// If it shines like a surface, as disks and rectangles do: the unit normal on the side that shines. Its strength falls with the cosine
+    /// (Lambert), and `intensity` is that along the normal. `None`: it shines evenly in all directions, as the many point lights do that the
+    /// thesis replaces a light with.
     pub surface: Option<Vec3>,
+    /// Whether it stands for an emissive surface of the scene, a [lamp](crate::Material::lamp): mirrors show that surface, and it is made again
+    /// where the surface moves.
+    pub lamp: bool,
     /// The number of its motion in the scene's animation.
     pub(crate) motion: Option<u32>,
 }
@@ -187,17 +191,18 @@ impl Light {
         Ok(Light::new(LightKind::Sphere { position, radius }))
     }
 
-    /// A flat round light about the axis `normal`, of any length.
+    /// A flat round light about the axis `normal`, of any length. It shines to the side of the normal; see [`Light::with_one_sided`].
     ///
     /// # Errors
     ///
     /// [`LightError`] if `normal` has no length, or `radius` is not above 0.
     pub fn disk(position: Vec3, normal: Vec3, radius: f32) -> Result<Light, LightError> {
         let (normal, radius) = (unit("disk", "normal", normal)?, size("disk", radius)?);
-        Ok(Light::new(LightKind::Disk { position, normal, radius }))
+        Ok(Light::new(LightKind::Disk { position, normal, radius }).with_one_sided(true))
     }
 
-    /// A flat rectangular light: `half_u` and `half_v` point from its centre to the middles of two adjacent sides.
+    /// A flat rectangular light: `half_u` and `half_v` point from its centre to the middles of two adjacent sides. It shines to the side of
+    /// `half_u` × `half_v`; see [`Light::with_one_sided`].
     ///
     /// # Errors
     ///
@@ -218,12 +223,20 @@ impl Light {
         if half_u.dot(half_v).abs() > LEANING * half_u.length() * half_v.length() {
             return Err(refuse("rotate one of them, so that they are at a right angle"));
         }
-        Ok(Light::new(LightKind::Rectangle { position, half_u, half_v }))
+        Ok(Light::new(LightKind::Rectangle { position, half_u, half_v }).with_one_sided(true))
     }
 
     /// A light with a shape that is used unchecked.
     pub fn new(kind: LightKind) -> Light {
-        Light { name: String::new(), kind, intensity: Vec3::ONE, falloff: Falloff::None, surface: None, motion: None }
+        Light {
+            name: String::new(),
+            kind,
+            intensity: Vec3::ONE,
+            falloff: Falloff::None,
+            surface: None,
+            lamp: false,
+            motion: None,
+        }
     }
 
     /// The same light with this strength, see [`Light::intensity`].
@@ -236,9 +249,37 @@ impl Light {
         Light { falloff, ..self }
     }
 
-    /// The same light as that of an emissive surface with this unit normal.
+    /// The same light, shining like a surface with this unit normal: see [`Light::surface`].
     pub fn with_surface(self, normal: Vec3) -> Light {
         Light { surface: Some(normal), ..self }
+    }
+
+    /// The same disk or rectangle, shining like a surface to the side of its normal, or of `half_u` × `half_v`; if not, evenly to both sides, with
+    /// its intensity in all directions. Lights of other kinds shine evenly and stay unchanged.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Light, glam::Vec3};
+    ///
+    /// let panel = Light::rectangle(Vec3::new(0.0, 3.0, 0.0), 0.6 * Vec3::X, 0.3 * Vec3::Z)?;
+    /// assert_eq!(panel.surface, Some(Vec3::NEG_Y));
+    /// assert_eq!(panel.with_one_sided(false).surface, None);
+    /// # Ok::<(), lightmesh_scene::LightError>(())
+    /// ```
+    pub fn with_one_sided(self, one_sided: bool) -> Light {
+        let surface = match self.kind {
+            LightKind::Disk { normal, .. } => Some(normal),
+            LightKind::Rectangle { half_u, half_v, .. } => {
+                let normal = half_u.as_dvec3().cross(half_v.as_dvec3()).try_normalize();
+                normal.map(|normal| normal.as_vec3())
+            }
+            _ => return self,
+        };
+        Light { surface: surface.filter(|_| one_sided), ..self }
+    }
+
+    /// The same light, standing for an emissive surface of the scene or not: see [`Light::lamp`].
+    pub fn with_lamp(self, lamp: bool) -> Light {
+        Light { lamp, ..self }
     }
 
     /// The same light with a name.

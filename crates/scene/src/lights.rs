@@ -6,13 +6,10 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::{Bounds, Environment, Falloff, Light, LightKind, Surroundings};
+use crate::{Bounds, Environment, Falloff, Geometry, Light, LightKind, Surroundings};
 
 /// The default ambient term as a share of what the lights give.
 const DEFAULT_AMBIENT: f32 = 0.1;
-
-/// Lamps that show a white surface in the middle of the scene darker than this do not light it: glowing eyes, say.
-const FAINT: f32 = 0.05;
 
 /// The lights of a scene, and the ambient light. Dereferences to the list of lights.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,7 +23,7 @@ pub struct Lights {
     pub background: Option<Vec3>,
     /// What surrounds the scene: the camera sees it unless there is a background, mirrors always. A sun in it is also in the list.
     pub environment: Option<Arc<Environment>>,
-    /// Whether the list is as it is meant to be: [`Scene::complete`](crate::Scene::complete) adds none, even if there are none, or faint ones.
+    /// Whether the list is as it is meant to be: [`Scene::complete`](crate::Scene::complete) adds none, even if there are none.
     pub chosen: bool,
 }
 
@@ -86,13 +83,12 @@ impl Lights {
 
     /// Whether there are lights, all of them those of lamps.
     pub fn are_lamps(&self) -> bool {
-        !self.list.is_empty() && self.list.iter().all(|light| light.surface.is_some())
+        !self.list.is_empty() && self.list.iter().all(|light| light.lamp)
     }
 
-    /// Whether a scene within `bounds` needs other lights: it has none, or only lamps that would not light it.
-    pub(crate) fn are_missing(&self, bounds: &Bounds) -> bool {
-        let are_faint = || self.are_lamps() && self.shown(bounds) < FAINT;
-        !self.chosen && self.environment.is_none() && (self.list.is_empty() || are_faint())
+    /// Whether a scene with this geometry needs other lights: it has none, and nothing in it emits light.
+    pub(crate) fn are_missing(&self, geometry: &Geometry) -> bool {
+        !self.chosen && self.environment.is_none() && self.list.is_empty() && !geometry.glows()
     }
 
     /// Radiance of rays that hit nothing.

@@ -28,13 +28,13 @@ pub struct Material {
     /// With these the surface reflects as glTF describes it: they say what `kd` and `ks` are then, and only these two count, and the tint of
     /// `kd`. Glass reflects by its own rules.
     pub facets: Option<Facets>,
-    /// Emitted radiance. It lights other surfaces where light is gathered, or by the lights of a [lamp](Material::lamp).
+    /// Emitted radiance. It lights other surfaces by the lights of a [lamp](Material::lamp), or where light is gathered.
     pub emission: Vec3,
     /// The part of the emitted radiance that is tinted: a surface that shows its image unlit. It also counts without a tint.
     pub emission_tinted: Vec3,
     /// An image that tints the surface.
     pub texture: Option<TextureUse>,
-    /// An image that `emission` is multiplied with. Lights never stand for such a surface: it lights others where light is gathered.
+    /// An image that `emission` is multiplied with. Lights that stand for the surface have the mean of its texels.
     pub emission_texture: Option<TextureUse>,
     /// An image of normals, which the shading uses in place of the surface's.
     pub normal_texture: Option<NormalMap>,
@@ -46,6 +46,9 @@ pub struct Material {
     pub catcher: bool,
     /// Whether lights stand for what it emits ([`Light::surface`](crate::Light::surface)): where light is gathered, it is left out.
     pub lamp: bool,
+    /// Whether only the front of what it emits lights other surfaces: where corners are counter-clockwise. Rays that see the back show the same as
+    /// on the front, since surfaces are never culled.
+    pub one_sided: bool,
     /// Where the surface is, and what it lets through; opaque everywhere without it.
     pub opacity: Option<Opacity>,
     /// Of glass and the like: how light is reflected, and goes on, where the opacity lets it through.
@@ -71,6 +74,7 @@ impl Default for Material {
             metallic_roughness_texture: None,
             catcher: false,
             lamp: false,
+            one_sided: false,
             opacity: None,
             dielectric: None,
         }
@@ -190,6 +194,11 @@ impl Material {
     /// Whether lights stand for what it emits.
     pub fn with_lamp(self, lamp: bool) -> Material {
         Material { lamp, ..self }
+    }
+
+    /// Whether what it emits lights other surfaces in front of it only.
+    pub fn with_one_sided(self, one_sided: bool) -> Material {
+        Material { one_sided, ..self }
     }
 
     /// An image that tints the surface.

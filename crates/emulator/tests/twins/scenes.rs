@@ -130,9 +130,17 @@ fn lamps() -> Scene {
     let draft = draft.painted(lamp.clone().named("box")).cuboid([0.2, 3.0, 0.1], [0.7, 3.25, 0.5]);
     let draft = draft.painted(lamp.named("panel"));
     let draft = draft.quad([[-3.0, 3.0, 1.0], [-2.0, 3.0, 1.0], [-2.0, 3.2, 2.0], [-3.0, 3.2, 2.0]]);
-    let draft = draft.painted(glow).quad([[-3.9, 0.5, -3.0], [-3.9, 0.5, 3.0], [-3.9, 3.5, 3.0], [-3.9, 3.5, -3.0]]);
+    let draft = draft.painted(glow.named("glow")).quad([
+        [-3.9, 0.5, -3.0],
+        [-3.9, 0.5, 3.0],
+        [-3.9, 3.5, 3.0],
+        [-3.9, 3.5, -3.0],
+    ]);
     let mut scene = draft.camera([0.5, 2.0, 3.5], [0.0, 1.5, -2.0]).finish("lamps");
     scene.add_lamps();
+    // The wall is left to gather rays.
+    scene.lights.list.retain(|light| light.name != "glow");
+    scene.geometry_mut().materials.iter_mut().for_each(|material| material.lamp &= material.name != "glow");
     assert!(scene.lights.len() > 4 && scene.lights.iter().all(|light| light.surface.is_some()));
     scene
 }

@@ -185,25 +185,26 @@ class Light:
         normal: Vector,
         radius: float,
         *,
-        one_sided: bool = False,
+        one_sided: bool = True,
         intensity: Color = 1.0,
         falloff: Falloff = "none",
         name: str = "",
     ) -> Light:
-        """A flat round light. It shines evenly to all sides; `one_sided`, like a surface: along `normal` with `intensity`, aside with the cosine."""
+        """A flat round light. It shines like a surface: along `normal` with `intensity`, aside with the cosine. Not `one_sided`: evenly to all
+        sides."""
     @staticmethod
     def rectangle(
         position: Vector,
         half_u: Vector,
         half_v: Vector,
         *,
-        one_sided: bool = False,
+        one_sided: bool = True,
         intensity: Color = 1.0,
         falloff: Falloff = "none",
         name: str = "",
     ) -> Light:
         """A flat rectangular light: `half_u` and `half_v`, at a right angle, point from its centre to the middles of two sides.
-        `one_sided`: towards half_u × half_v."""
+        It shines like a surface, towards half_u × half_v. Not `one_sided`: evenly to all sides."""
     @property
     def kind(self) -> str:
         """`point`, `directional`, `spot`, `sphere`, `disk` or `rectangle`."""

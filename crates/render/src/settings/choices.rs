@@ -341,7 +341,7 @@ impl AmbientSource {
         }
         let lights = &scene.lights;
         match lights.ambient {
-            None if lights.environment.is_some() || lights.are_lamps() => AmbientSource::Mesh,
+            None if lights.environment.is_some() || lights.are_lamps() || scene.geometry.glows() => AmbientSource::Mesh,
             _ => AmbientSource::Constant,
         }
     }

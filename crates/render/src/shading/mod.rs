@@ -389,7 +389,7 @@ pub(crate) fn is_seen(lights: &Lights, light: &Light) -> bool {
     let sun = lights.environment.as_ref().and_then(|environment| environment.sun());
     let is_sun = matches!((&light.kind, sun), (LightKind::Directional { direction, .. }, Some(sun))
         if direction.dot(sun.direction) < SAME_SUN);
-    light.surface.is_some() || is_sun
+    light.lamp || is_sun
 }
 
 impl LightTargets {

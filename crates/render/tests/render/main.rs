@@ -7,6 +7,7 @@ mod coverage;
 mod crop;
 mod degenerate;
 mod determinism;
+mod emitters;
 mod environment;
 mod fallback;
 mod figures;

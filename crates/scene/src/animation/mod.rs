@@ -12,6 +12,7 @@ pub(crate) mod rig;
 pub(crate) mod track;
 pub(crate) mod views;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use self::{
@@ -63,7 +64,16 @@ impl Animation {
     /// Records which materials may be those of lamps, if a part that moves has one.
     pub(crate) fn note_lamps(&mut self, geometry: &Geometry) {
         let shines = |&material: &u32| geometry.materials.get(material as usize).is_some_and(|material| material.lamp);
-        if self.parts.iter().any(|part| geometry.mesh.materials[part.triangles.clone()].iter().any(shines)) {
+        let moves = |triangles: Range<usize>| geometry.mesh.materials[triangles].iter().any(shines);
+        let places = geometry.mesh.instances.list();
+        let shape = |moving: &MovingInstance| places.get(moving.instance).map(|place| place.triangles.clone());
+        let mut shapes: Vec<Range<u32>> = self.instances.iter().filter_map(shape).collect();
+        shapes.sort_by_key(|shape| (shape.start, shape.end));
+        shapes.dedup();
+        let mut shapes = shapes.into_iter();
+        if self.parts.iter().any(|part| moves(part.triangles.clone()))
+            || shapes.any(|shape| moves(shape.start as usize..shape.end as usize))
+        {
             self.lamps = Some(geometry.materials.iter().map(|material| material.lamp).collect());
         }
     }
@@ -116,8 +126,8 @@ impl Scene {
 
     /// Makes the lights of lamps anew, in their place among the others; none if they were replaced by other lights.
     fn move_lamps(&mut self, marks: &[bool]) {
-        let Some(place) = self.lights.iter().position(|light| light.surface.is_some()) else { return };
-        self.lights.retain(|light| light.surface.is_none());
+        let Some(place) = self.lights.iter().position(|light| light.lamp) else { return };
+        self.lights.retain(|light| !light.lamp);
         let geometry = Arc::make_mut(&mut self.geometry);
         for (material, &mark) in geometry.materials.iter_mut().zip(marks) {
             material.lamp = mark;

@@ -88,6 +88,11 @@ impl Carried for Light {
                 (area > 0.0 && area.is_finite()).then_some(())?;
             }
         }
+        if let Some(normal) = self.surface {
+            // That of the shape exactly, on the side where it was.
+            let (side, light_side) = (direction(normal)?, light.clone().with_one_sided(true).surface);
+            light.surface = light_side.map(|own| if own.dot(side) < 0.0 { -own } else { own });
+        }
         Some(light)
     }
 }

@@ -9,7 +9,7 @@ use std::{collections::HashMap, path::Path};
 use glam::{DVec3, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
-use super::{ExportError, own_lights, pictures::Pictures, refused};
+use super::{ExportError, own_lights, pictures::Pictures, refused, toward_surface};
 use crate::{
     Camera, Dielectric, Falloff, Fov, Light, LightKind, Material, Mesh, Opacity, OpacityChannel, OpacityMode,
     Projection, Scene,
@@ -320,12 +320,15 @@ fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
         dielectric: material.dielectric.map(DielectricExtras::from),
         facets: material.facets.map(FacetExtras::from),
     };
+    // What is shown as it is has no image of emitted light that would be multiplied with this.
+    let shown =
+        if material.texture.is_none() { material.emission + material.emission_tinted } else { material.emission };
     let mut entry = json!({
         "name": material.name,
         "pbrMetallicRoughness":
             {"baseColorFactor": [r, g, b, 1.0], "metallicFactor": metallic, "roughnessFactor": roughness},
-        "emissiveFactor": clamped(material.emission),
-        "doubleSided": true,
+        "emissiveFactor": clamped(shown),
+        "doubleSided": !material.one_sided,
         "extras": {"lightmesh": extras},
     });
     if let Some(texture) = pictures.of_material(index) {
@@ -436,8 +439,11 @@ fn light_entry(light: &Light) -> Value {
     let color = if strongest > 0.0 { light.intensity.as_dvec3() / strongest } else { DVec3::ONE };
     let shape = match light.kind {
         LightKind::Sphere { radius, .. } => Some(ShapeExtras::Sphere { radius }),
-        LightKind::Disk { normal, radius, .. } => Some(ShapeExtras::Disk { normal: normal.to_array(), radius }),
+        LightKind::Disk { normal, radius, .. } => {
+            Some(ShapeExtras::Disk { normal: light.surface.unwrap_or(normal).to_array(), radius })
+        }
         LightKind::Rectangle { half_u, half_v, .. } => {
+            let half_v = toward_surface(light, half_u, half_v);
             Some(ShapeExtras::Rectangle { half_u: half_u.to_array(), half_v: half_v.to_array() })
         }
         _ => None,
@@ -459,7 +465,8 @@ fn light_entry(light: &Light) -> Value {
         LightKind::Spot { .. } => "spot",
         _ => "point",
     };
-    let extras = LightExtras { shape, spread, angle, radius, no_falloff: light.falloff == Falloff::None };
+    let (one_sided, no_falloff) = (light.surface.is_some(), light.falloff == Falloff::None);
+    let extras = LightExtras { shape, spread, angle, radius, one_sided, no_falloff };
     let mut entry = json!({"name": light.name, "type": kind, "color": color.to_array(), "intensity": strongest});
     if extras != LightExtras::default() {
         entry["extras"] = json!({"lightmesh": extras});

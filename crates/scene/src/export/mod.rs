@@ -17,6 +17,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use glam::Vec3;
 use lightmesh_files::{PublishError, Ready, WriteError, publish};
 
 use crate::{Light, Scene};
@@ -96,7 +97,13 @@ impl Scene {
 
 /// The lights that are written: all but those of lamps, which are made again from their surfaces.
 fn own_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
-    scene.lights.iter().filter(|light| light.surface.is_none())
+    scene.lights.iter().filter(|light| !light.lamp)
+}
+
+/// The second half side of a rectangle, turned so that u × v is the side to which it shines.
+fn toward_surface(light: &Light, half_u: Vec3, half_v: Vec3) -> Vec3 {
+    let is_turned = light.surface.is_some_and(|normal| half_u.cross(half_v).dot(normal) < 0.0);
+    if is_turned { -half_v } else { half_v }
 }
 
 /// The content of a file cannot be made.

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::own_lights;
+use super::{own_lights, toward_surface};
 use crate::{
     Camera, Falloff, Fov, Light, LightKind, Projection, Scene, Weight,
     formats::toml::{
@@ -111,6 +111,7 @@ fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
         v: None,
         size: None,
         up: None,
+        one_sided: None,
         intensity: Some(color(light.intensity)),
         falloff: Some(match light.falloff {
             Falloff::None => FalloffName::None,
@@ -118,6 +119,9 @@ fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
         }),
         motion: None,
     };
+    if matches!(light.kind, LightKind::Disk { .. } | LightKind::Rectangle { .. }) && light.surface.is_none() {
+        entry.one_sided = Some(anywhere(false));
+    }
     match light.kind {
         LightKind::Point { spread, .. } => entry.spread = (spread > 0.0).then(|| number(spread)),
         LightKind::Directional { direction, angle } => {
@@ -140,11 +144,12 @@ fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
         }
         LightKind::Disk { normal, radius, .. } => {
             entry.kind = anywhere(LightKindName::Disk);
-            entry.normal = Some(vector(normal));
+            entry.normal = Some(vector(light.surface.unwrap_or(normal)));
             entry.radius = Some(number(radius));
         }
         LightKind::Rectangle { half_u, half_v, .. } => {
             entry.kind = anywhere(LightKindName::Rectangle);
+            let half_v = toward_surface(light, half_u, half_v);
             (entry.u, entry.v) = (Some(vector(2.0 * half_u)), Some(vector(2.0 * half_v)));
         }
     }

@@ -85,7 +85,7 @@ fn files_have_the_triangles_boxes_and_lights_of_the_table() {
             assert!(bounds.min.cmpge(min).all() && bounds.max.cmple(max).all(), "{file}: {bounds:?}");
         }
         // Lamps are none of the file's lights.
-        let own = scene.lights.iter().filter(|light| light.surface.is_none());
+        let own = scene.lights.iter().filter(|light| !light.lamp);
         let mut kinds: Vec<&str> = own.map(|light| light.kind_name()).collect();
         kinds.sort_unstable();
         assert_eq!(kinds, lights, "{file}");

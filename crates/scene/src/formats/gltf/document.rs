@@ -353,6 +353,8 @@ pub(super) struct Material<'a> {
     #[serde(borrow)]
     pub(super) alpha_mode: Option<Cow<'a, str>>,
     pub(super) alpha_cutoff: Option<f32>,
+    #[serde(default)]
+    pub(super) double_sided: bool,
     pub(super) extensions: Option<Box<MaterialExtensions>>,
     #[serde(borrow)]
     pub(super) extras: Option<&'a RawValue>,

@@ -132,6 +132,7 @@ impl MaterialExtras {
             metallic_roughness_texture: None,
             catcher: self.catcher,
             lamp: self.lamp,
+            one_sided: false,
             opacity: None,
             dielectric: self.dielectric.map(Dielectric::from),
         }
@@ -157,6 +158,9 @@ pub(crate) struct LightExtras {
     /// Radius of the ball that a spot light is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) radius: Option<f32>,
+    /// Of a disk or rectangle: whether it shines like a surface, to the side of its normal or of half_u × half_v.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) one_sided: bool,
     /// Falloff `none`; else inverse-square, as in glTF.
     #[serde(default)]
     pub(crate) no_falloff: bool,

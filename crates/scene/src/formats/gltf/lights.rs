@@ -41,14 +41,16 @@ pub(super) fn read(
         ("point", None) => LightKind::Point { position, spread: spread(own) },
         _ => return Ok(None),
     };
-    Ok(Some(Light {
+    let light = Light {
         name: String::new(),
         kind,
         intensity,
         falloff: if own.no_falloff { Falloff::None } else { Falloff::InverseSquare },
         surface: None,
+        lamp: false,
         motion: None,
-    }))
+    };
+    Ok(Some(light.with_one_sided(own.one_sided)))
 }
 
 /// Radius of the ball that represents a point light; an invalid length counts as 0.

@@ -18,9 +18,8 @@ use crate::{LoadError, Material, Opacity, OpacityMode, Principled, TextureUse};
 /// Above this roughness, what is behind glass is visibly blurred.
 const CLEAR: f32 = 0.1;
 
-/// The material without its texture, by our own extras if the file has them. `tinted`: whether a texture or vertex colours are going
-/// to tint it.
-pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: bool) -> Result<Material, LoadError> {
+/// The material without its texture, by our own extras if the file has them.
+pub(super) fn read(path: &Path, index: usize, of: &document::Material) -> Result<Material, LoadError> {
     let name = of.name.as_deref().unwrap_or_default().to_owned();
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
     if let Some(own) = own {
@@ -28,9 +27,15 @@ pub(super) fn read(path: &Path, index: usize, of: &document::Material, tinted: b
             let problem = format!("extras.lightmesh of material {index} has shininess = {}", own.shininess);
             return Err(malformed(path, problem));
         }
-        return Ok(own.into_material(name));
+        return Ok(one_sided(own.into_material(name), of));
     }
-    Ok(Material { name, ..translated(of, tinted) })
+    Ok(one_sided(Material { name, ..translated(of) }, of))
+}
+
+/// Back faces are not seen, says glTF, so that what they emit lights nothing.
+fn one_sided(material: Material, of: &document::Material) -> Material {
+    let one_sided = !of.double_sided && material.emission != Vec3::ZERO;
+    material.with_one_sided(one_sided)
 }
 
 /// How the material places its texture, and those of its emission, of its normals and of its facets, if our own extras specify it.
@@ -116,10 +121,10 @@ pub(super) fn opacity(of: &document::Material, texture: Option<TextureUse>) -> O
 }
 
 /// The material in glTF's own terms.
-pub(super) fn translated(of: &document::Material, tinted: bool) -> Material {
+pub(super) fn translated(of: &document::Material) -> Material {
     let all = principled(of);
     if is_unlit(of) {
-        return unlit(all.base.max(Vec3::ZERO), tinted);
+        return unlit(all.base.max(Vec3::ZERO));
     }
     // What it lets through is said apart: by its textures, too.
     Material { opacity: None, ..all.material() }
@@ -150,7 +155,7 @@ fn principled(of: &document::Material) -> Principled {
     }
 }
 
-fn unlit(base: Vec3, tinted: bool) -> Material {
-    let (emission, emission_tinted) = if tinted { (Vec3::ZERO, base) } else { (base, Vec3::ZERO) };
-    Material { ka: Vec3::ZERO, kd: Vec3::ZERO, ks: Vec3::ZERO, emission, emission_tinted, ..Material::default() }
+/// What is shown as it is, and is no lamp.
+fn unlit(base: Vec3) -> Material {
+    Material { ka: Vec3::ZERO, kd: Vec3::ZERO, ks: Vec3::ZERO, emission_tinted: base, ..Material::default() }
 }

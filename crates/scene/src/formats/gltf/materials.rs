@@ -98,16 +98,11 @@ impl Materials {
         if placement.material.is_some() {
             return Ok(materials);
         }
-        let mut colored = vec![false; document.materials.len()];
-        for primitive in document.meshes.iter().flat_map(|mesh| &mesh.primitives) {
-            let colored = primitive.material.and_then(|material| colored.get_mut(material as usize));
-            colored.into_iter().for_each(|colored| *colored |= primitive.attributes.color_0.is_some());
-        }
-        for (index, (entry, colored)) in document.materials.iter().zip(colored).enumerate() {
+        for (index, entry) in document.materials.iter().enumerate() {
             material::count_left_out(entry, left_out);
             let info = entry.pbr_metallic_roughness.as_deref().and_then(|pbr| pbr.base_color_texture.as_ref());
             let found = info.and_then(|info| pictures.find(info, draft));
-            let material = material::read(path, index, entry, colored || found.is_some())?;
+            let material = material::read(path, index, entry)?;
             let (mut texture, mut set) = found.unzip();
             let (mut emission, mut emission_texture) = (material.emission, None);
             if let Some(info) = material::emissive_texture(entry) {
@@ -175,7 +170,7 @@ impl Materials {
 
     fn default_material(&mut self, draft: &mut Draft) -> u32 {
         *self.default.get_or_insert_with(|| {
-            draft.materials.push(material::translated(&document::Material::default(), true));
+            draft.materials.push(material::translated(&document::Material::default()));
             draft.materials.len() as u32 - 1
         })
     }

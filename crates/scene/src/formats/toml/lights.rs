@@ -30,9 +30,11 @@ pub(super) fn read(source: &Source, table: &Spanned<LightEntry>) -> Result<(Ligh
             Some(FalloffName::InverseSquare) => Falloff::InverseSquare,
         },
         surface: None,
+        lamp: false,
         motion: None,
     };
-    Ok((light, position))
+    let one_sided = entry.one_sided.as_ref().is_none_or(|one_sided| *one_sided.get_ref());
+    Ok((light.with_one_sided(one_sided), position))
 }
 
 fn kind(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> Result<LightKind, LoadError> {
@@ -90,14 +92,15 @@ fn refuse_foreign_keys(source: &Source, table: &Spanned<LightEntry>) -> Result<(
         ("v", entry.v.is_some()),
         ("size", entry.size.is_some()),
         ("up", entry.up.is_some()),
+        ("one_sided", entry.one_sided.is_some()),
     ]);
     let taken: &[&str] = match entry.kind.get_ref() {
         LightKindName::Point => &["position", "spread"],
         LightKindName::Directional => &["direction", "angle"],
         LightKindName::Spot => &["position", "direction", "target", "inner", "outer", "radius"],
         LightKindName::Sphere => &["position", "radius"],
-        LightKindName::Disk => &["position", "direction", "target", "normal", "radius"],
-        LightKindName::Rectangle => &["position", "direction", "target", "u", "v", "size", "up"],
+        LightKindName::Disk => &["position", "direction", "target", "normal", "radius", "one_sided"],
+        LightKindName::Rectangle => &["position", "direction", "target", "u", "v", "size", "up", "one_sided"],
     };
     match there.iter().find(|key| !taken.contains(key)) {
         None => Ok(()),
@@ -185,9 +188,10 @@ fn rectangle(source: &Source, table: &Spanned<LightEntry>, position: DVec3) -> R
         None if normal.y.abs() > 0.999 => DVec3::Z,
         None => DVec3::Y,
     };
-    let side = normal.cross(up).try_normalize();
+    // So that side × up is the side to which it shines.
+    let side = up.cross(normal).try_normalize();
     match (side, &entry.up) {
-        (Some(side), _) => Ok((0.5 * width * side, 0.5 * height * side.cross(normal))),
+        (Some(side), _) => Ok((0.5 * width * side, 0.5 * height * normal.cross(side))),
         (None, Some(up)) => Err(source.refuse("up", up, "is parallel to the direction", "choose another `up`")),
         (None, None) => Err(source.refuse("kind", &entry.kind, "has no up direction", "add `up`")),
     }

@@ -204,7 +204,7 @@ pub(crate) struct LightEntry {
     /// The light's centre; all kinds except directional.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) position: Option<Vector>,
-    /// The direction of the light (directional, spot); the axis (disk, rectangle).
+    /// The direction of the light; of a disk or rectangle, the side to which it shines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) direction: Option<Vector>,
     /// A point that the light is aimed at, instead of `direction`.
@@ -241,6 +241,10 @@ pub(crate) struct LightEntry {
     /// Rectangle with a direction: the direction of its height. Default: +Y, or +Z if the direction is along Y.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) up: Option<Vector>,
+    /// Disk and rectangle: shines like a surface, to the side of the direction or normal, or of u × v, with `intensity` along it and less aside, by
+    /// the cosine. If false, evenly to both sides, with `intensity` in all directions. Default: true.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) one_sided: Option<Spanned<bool>>,
     /// Default: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) intensity: Option<Spanned<Color>>,

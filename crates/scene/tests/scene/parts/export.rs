@@ -101,6 +101,8 @@ fn scene(offset: DVec3) -> Scene {
         light(LightKind::Sphere { position, radius: 0.33 }, Falloff::None),
         light(LightKind::Disk { position, normal: direction, radius: 0.33 }, Falloff::InverseSquare),
         light(LightKind::Rectangle { position, half_u, half_v }, Falloff::None),
+        Light::disk(position, direction, 0.33).unwrap().with_intensity([0.1, 0.2, 0.3]),
+        Light::rectangle(position, half_u, half_v).unwrap().with_falloff(Falloff::InverseSquare),
         Light::point(position).with_intensity(Vec3::ZERO),
     ];
     let up = direction.cross(Vec3::Y).cross(direction).normalize();

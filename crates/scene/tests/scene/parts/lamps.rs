@@ -38,8 +38,9 @@ fn total(lights: &[Light]) -> f32 {
 fn triangles_of_an_open_lamp_that_face_opposite_ways_are_one() {
     let [a, b, c, d] = [[-1.0, 4.0, -0.5], [1.0, 4.0, -0.5], [1.0, 4.0, 0.5], [-1.0, 4.0, 0.5]];
     let mut geometry = room(&[[a, b, c], [a, d, c]]);
-    let [light] = lamps(&mut geometry).try_into().unwrap();
-    assert!((light.intensity - Vec3::new(4.0, 2.0, 1.0)).length() < 1e-5, "{light:?}");
+    // One for each side.
+    let lights: [Light; 2] = lamps(&mut geometry).try_into().unwrap();
+    assert!(lights.iter().all(|light| (light.intensity - Vec3::new(4.0, 2.0, 1.0)).length() < 1e-5), "{lights:?}");
 }
 
 #[test]
@@ -50,7 +51,10 @@ fn a_rectangle_becomes_that_rectangle_whatever_its_winding() {
     let mut corners = [at(-1.0, -0.5), at(1.0, -0.5), at(1.0, 0.5), at(-1.0, 0.5)];
     for _ in 0..2 {
         let mut geometry = room(&quad(corners));
-        let [light] = lamps(&mut geometry).try_into().unwrap();
+        let lights = lamps(&mut geometry);
+        assert_eq!(lights.iter().map(|light| light.surface.unwrap().y).sum::<f32>(), 0.0);
+        let is_below = |light: &Light| light.surface == Some(Vec3::NEG_Y);
+        let light = lights.into_iter().find(is_below).unwrap();
         assert!(geometry.materials[1].lamp && light.surface == Some(Vec3::NEG_Y), "{light:?}");
         assert!(
             (light.intensity - Vec3::new(4.0, 2.0, 1.0)).length() < 1e-5 && light.falloff == Falloff::InverseSquare
@@ -75,7 +79,9 @@ fn a_disc_becomes_that_disc() {
         [0.5 * angle.cos(), 0.5 * angle.sin(), -3.0]
     };
     let fan: Vec<_> = (0..24).map(|index| [[0.0, 0.0, -3.0], at(index), at(index + 1)]).collect();
-    let [light] = lamps(&mut room(&fan)).try_into().unwrap();
+    let lights = lamps(&mut room(&fan));
+    assert_eq!(lights.len(), 2);
+    let light = lights.iter().find(|light| light.surface.unwrap().z > 0.0).unwrap();
     let LightKind::Disk { position, normal, radius } = light.kind else { panic!("{light:?}") };
     assert!((position - Vec3::new(0.0, 0.0, -3.0)).length() < 0.01 && normal.z > 0.999 && (radius - 0.5).abs() < 0.01);
 }
@@ -132,9 +138,64 @@ fn a_panel_in_the_middle_shines_on_both_sides() {
 }
 
 #[test]
-fn a_glowing_wall_is_no_lamp() {
+fn a_glowing_wall_is_cut_into_pieces() {
     let mut geometry = room(&quad([[-5.0, -5.0, -5.0], [5.0, -5.0, -5.0], [5.0, 5.0, -5.0], [-5.0, 5.0, -5.0]]));
-    assert!(lamps(&mut geometry).is_empty() && !geometry.materials[1].lamp);
+    let lights = lamps(&mut geometry);
+    // Nothing is behind the wall. A quarter of the room's diagonal is 4.33.
+    assert!(
+        lights.len() == 9 && lights.iter().all(|light| light.surface == Some(Vec3::Z)) && geometry.materials[1].lamp
+    );
+    assert!((total(&lights) / 200.0 - 1.0).abs() < 1e-5, "{}", total(&lights));
+    let size = |light: &Light| match light.kind {
+        LightKind::Rectangle { half_u, half_v, .. } => 4.0 * half_u.cross(half_v).length(),
+        _ => panic!("{light:?}"),
+    };
+    assert!(lights.iter().all(|light| (size(light) - 100.0 / 9.0).abs() < 1e-3));
+}
+
+#[test]
+fn a_side_in_front_of_which_nothing_is_does_not_shine() {
+    let at = |height: f32| quad([[-0.5, height, -0.5], [0.5, height, -0.5], [0.5, height, 0.5], [-0.5, height, 0.5]]);
+    for (height, expected) in [(5.0, [-1.0].as_slice()), (-5.0, &[1.0])] {
+        let lights = lamps(&mut room(&at(height)));
+        assert_eq!(lights.iter().map(|light| light.surface.unwrap().y).collect::<Vec<f32>>(), expected);
+    }
+}
+
+#[test]
+fn one_sided_lamps_shine_where_their_corners_are_counter_clockwise() {
+    let corners = [[-0.5, 0.0, -0.5], [0.5, 0.0, -0.5], [0.5, 0.0, 0.5], [-0.5, 0.0, 0.5]];
+    let mut turned = corners;
+    turned.reverse();
+    for (corners, normal) in [(corners, Vec3::NEG_Y), (turned, Vec3::Y)] {
+        let mut geometry = room(&quad(corners));
+        geometry.materials[1].one_sided = true;
+        let [light] = lamps(&mut geometry).try_into().unwrap();
+        assert_eq!(light.surface, Some(normal));
+    }
+    // A box that is inside out lights what it contains.
+    let (min, max) = (Vec3::splat(-1.0), Vec3::splat(1.0));
+    let inward: Vec<_> = cuboid(min, max).iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    let mut geometry = room(&inward);
+    geometry.materials[1].one_sided = true;
+    let lights = lamps(&mut geometry);
+    assert!(
+        lights.len() == 6 && lights.iter().all(|light| light.position().unwrap().dot(light.surface.unwrap()) < 0.0)
+    );
+}
+
+#[test]
+fn what_surrounds_the_scene_is_left_to_gather_rays() {
+    let dome = cuboid(Vec3::splat(-50.0), Vec3::splat(50.0));
+    let mut geometry = room(&dome);
+    assert!(lamps(&mut geometry).is_empty() && !geometry.materials[1].lamp && geometry.glows());
+    // A small lamp of the same material is told apart.
+    let small = quad([[-0.5, 4.0, -0.5], [0.5, 4.0, -0.5], [0.5, 4.0, 0.5], [-0.5, 4.0, 0.5]]);
+    let mut geometry = room(&[dome, small.to_vec()].concat());
+    assert_eq!(lamps(&mut geometry).len(), 2);
+    assert!(geometry.materials[1].lamp && !geometry.materials[2].lamp && geometry.glows());
+    assert_eq!(geometry.mesh.materials, [[0].as_slice(), &[2; 12], &[1; 2]].concat());
+    assert!(!room(&small).glows());
 }
 
 #[test]
@@ -145,5 +206,13 @@ fn many_lamps_become_few_with_the_same_light() {
     };
     let lights = lamps(&mut room(&(0..1000).flat_map(lamp).collect::<Vec<_>>()));
     assert_eq!(lights.len(), LIGHTS);
+    // All over the place of the lamps, and to all sides.
+    for side in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
+        let facing = |light: &&Light| light.surface.unwrap().dot(side) > 0.9;
+        let strength: f32 = lights.iter().filter(facing).map(|light| light.intensity.x).sum();
+        assert!((strength / (2.0 * 1000.0 * 0.0025) - 1.0).abs() < 0.1, "{side}: {strength}");
+    }
+    let places = Bounds::around(lights.iter().filter_map(Light::position));
+    assert!(places.min.x < -3.0 && places.max.x > 3.0 && places.max.z > -0.5, "{places:?}");
     assert!((total(&lights) / (2.0 * 6000.0 * 0.0025) - 1.0).abs() < 1e-3, "{}", total(&lights));
 }

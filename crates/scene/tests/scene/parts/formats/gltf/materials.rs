@@ -190,7 +190,8 @@ fn unlit_materials_give_off_their_colour() {
     assert!(material.texture.is_some());
     document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
     let material = &open(&document).geometry.materials[0];
-    assert_eq!((material.emission, material.emission_tinted), (base, Vec3::ZERO));
+    // No lamp stands for it.
+    assert_eq!((material.emission, material.emission_tinted), (Vec3::ZERO, base));
 }
 
 #[test]
@@ -208,9 +209,11 @@ fn emission_has_its_strength() {
         let uses = material.emission_texture.unwrap();
         assert_eq!((material.emission, uses.texture), (Vec3::new(4.0, 2.0, 0.0), 0));
         assert_eq!(uses.transform.translation, Vec2::new(0.5, 0.25));
-        assert!(!material.lamp, "no light stands for it");
+        assert!(material.lamp && material.one_sided, "lights stand for its front");
         document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
     }
+    document["materials"][0]["doubleSided"] = json!(true);
+    assert!(!open(&document).geometry.materials[0].one_sided);
     let uvs = |document: &Value| open(document).geometry.mesh.uvs.clone();
     let first = uvs(&document);
     document["materials"][0]["emissiveTexture"]["texCoord"] = json!(1);
@@ -248,6 +251,8 @@ fn normals_have_an_image_with_a_scale() {
         assert_eq!(warnings(&document), "");
         document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
     }
+    document["materials"][0]["doubleSided"] = json!(true);
+    assert!(!open(&document).geometry.materials[0].one_sided);
     let uvs = |document: &Value| open(document).geometry.mesh.uvs.clone();
     let first = uvs(&document);
     document["materials"][0]["normalTexture"]["texCoord"] = json!(1);
@@ -286,6 +291,8 @@ fn roughness_and_metal_have_an_image() {
         assert_eq!(warnings(&document), "");
         document["materials"][0]["pbrMetallicRoughness"].as_object_mut().unwrap().remove("baseColorTexture");
     }
+    document["materials"][0]["doubleSided"] = json!(true);
+    assert!(!open(&document).geometry.materials[0].one_sided);
     let uvs = |document: &Value| open(document).geometry.mesh.uvs.clone();
     let first = uvs(&document);
     document["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"]["texCoord"] = json!(1);

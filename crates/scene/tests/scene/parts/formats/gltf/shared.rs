@@ -1,7 +1,7 @@
 //! Meshes in many places: stored once, or copied.
 
 use glam::{Vec2, Vec3};
-use lightmesh_scene::{FIRST_INSTANCED, Instancing, Mesh};
+use lightmesh_scene::{FIRST_INSTANCED, Instancing, Light, Mesh};
 
 use super::animations::animate;
 use super::geometry::instanced;
@@ -116,9 +116,25 @@ fn flat_places_are_copied() {
 }
 
 #[test]
-fn lamps_are_copied() {
+fn lamps_shine_in_each_place() {
     let mut document = several();
     document["materials"] = json!([{"emissiveFactor": [1, 1, 1]}]);
     document["meshes"][0]["primitives"][0]["material"] = json!(0);
-    assert_eq!(same(&document), 0);
+    assert_eq!(same(&document), 4);
+    animate(&mut document, "way", 1, "translation", &[3.0, 0.0, 1.0, 5.0, 1.0, 1.0], "LINEAR");
+    let lights = |scene: &Scene| -> Vec<String> {
+        let rounded = |v: Vec3| (v * 1e3).round() + 0.0;
+        let light = |light: &Light| {
+            let place = rounded(light.position().unwrap());
+            format!("{place} {} {}", rounded(light.surface.unwrap()), rounded(light.intensity))
+        };
+        let mut all: Vec<String> = scene.lights.iter().map(light).collect();
+        all.sort();
+        all
+    };
+    let [shared, copied] = both(&document);
+    assert!(!shared.lights.is_empty() && lights(&shared) != lights(&shared.at(1.0)));
+    for time in [0.0, 1.0] {
+        assert_eq!(lights(&shared.at(time)), lights(&copied.at(time)));
+    }
 }

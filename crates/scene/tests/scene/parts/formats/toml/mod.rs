@@ -138,7 +138,25 @@ fn a_rectangle_that_faces_down_has_an_up() {
     let light = "[[light]]\nkind = \"rectangle\"\nposition = [0, 5, 0]\ndirection = [0, -1, 0]\nsize = [2, 4]\n";
     let scene = open(&format!("{light}[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n"));
     let LightKind::Rectangle { half_u, half_v, .. } = scene.lights[0].kind else { panic!("a rectangle") };
-    assert_eq!((half_u, half_v), (Vec3::NEG_X, 2.0 * Vec3::Z));
+    assert_eq!((half_u, half_v), (Vec3::X, 2.0 * Vec3::Z));
+    assert_eq!(scene.lights[0].surface, Some(Vec3::NEG_Y));
+}
+
+#[test]
+fn disks_and_rectangles_may_shine_to_both_sides() {
+    let ball = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+    let disk = "[[light]]\nkind = \"disk\"\nposition = [0, 5, 0]\nnormal = [0, -1, 0]\nradius = 1\n";
+    let rectangle = "[[light]]\nkind = \"rectangle\"\nposition = [0, 5, 0]\nu = [1, 0, 0]\nv = [0, 0, 1]\n";
+    for light in [disk, rectangle] {
+        for (line, surface) in
+            [("", Some(Vec3::NEG_Y)), ("one_sided = true\n", Some(Vec3::NEG_Y)), ("one_sided = false\n", None)]
+        {
+            assert_eq!(open(&format!("{light}{line}{ball}")).lights[0].surface, surface);
+        }
+    }
+    let point = "[[light]]\nkind = \"point\"\nposition = [0, 5, 0]\none_sided = false\n";
+    let error = error(&format!("{point}{ball}"));
+    assert!(error.contains("does not take `one_sided`"), "{error}");
 }
 
 #[test]
@@ -202,7 +220,10 @@ fn lights_of_all_kinds() {
     assert_eq!(*kinds[3], LightKind::Sphere { position, radius: 0.5 });
     assert_eq!(*kinds[4], LightKind::Disk { position, normal: Vec3::Z, radius: 0.5 });
     assert_eq!(*kinds[5], LightKind::Rectangle { position, half_u: Vec3::X, half_v: 2.0 * Vec3::Z });
-    assert_eq!(*kinds[6], LightKind::Rectangle { position: up, half_u: Vec3::X, half_v: 2.0 * Vec3::Y });
+    assert_eq!(*kinds[6], LightKind::Rectangle { position: up, half_u: Vec3::NEG_X, half_v: 2.0 * Vec3::Y });
+    let surfaces: Vec<Option<Vec3>> = scene.lights.iter().map(|light| light.surface).collect();
+    assert_eq!(surfaces[4..7], [Some(Vec3::Z), Some(Vec3::NEG_Y), Some(Vec3::NEG_Z)]);
+    assert!(surfaces[..4].iter().all(Option::is_none));
     let outer = std::f32::consts::FRAC_PI_4;
     assert_eq!(*kinds[7], LightKind::Spot { position: up, direction: Vec3::NEG_Y, inner: 0.0, outer, radius: 0.25 });
 }
@@ -405,7 +426,7 @@ fn what_a_material_emits_may_have_a_texture() {
         scene.geometry.materials[0].clone()
     };
     let shown = material("emission_texture = \"oak.png\"\ntexture_scale = 3");
-    assert_eq!((shown.emission, shown.texture, shown.lamp), (Vec3::ONE, None, false));
+    assert_eq!((shown.emission, shown.texture, shown.lamp), (Vec3::ONE, None, true));
     assert_eq!(shown.emission_texture.unwrap().transform.matrix2.x_axis, Vec2::new(3.0, 0.0));
     assert_eq!(material("emission_texture = \"oak.png\"\nemission = [2, 0, 4]").emission, Vec3::new(2.0, 0.0, 4.0));
     let gone = material("emission_texture = \"gone.png\"\nemission = [2, 0, 4]");

@@ -1,0 +1,83 @@
+//! Very many lights become fewer: those that are near each other and face the same way become one.
+//!
+//! 1. All lights form a group; while there are too few groups, the one in which light would move farthest is halved. That is the one with
+//!    the largest product of its strength and the square of its extent: of its places and its normals. It is halved in the middle of its
+//!    longest side.
+//! 2. A group shines from the place of that of its lights which is nearest to its middle, which is no place inside a wall, with the light of all.
+
+use glam::Vec3;
+
+use super::LIGHTS;
+use crate::Light;
+
+/// How far lights are from each other that face opposite ways, relative to the extent of all.
+const FACING: f32 = 1.0;
+
+/// Lights of a group, and how much would be wrong if they were one.
+struct Group {
+    members: Vec<usize>,
+    /// Along which it is largest, and the middle there.
+    axis: usize,
+    middle: f32,
+    wrong: f32,
+}
+
+/// At most [`LIGHTS`] lights with the same strength.
+pub(super) fn merged(lights: Vec<Light>) -> Vec<Light> {
+    if lights.len() <= LIGHTS {
+        return lights;
+    }
+    let place = |light: &Light| light.position().unwrap_or_default();
+    let (least, most) = lights.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(least, most), light| {
+        (least.min(place(light)), most.max(place(light)))
+    });
+    let scale = 0.5 * FACING * (most - least).length();
+    let points: Vec<[f32; 6]> = lights
+        .iter()
+        .map(|light| {
+            let (place, facing) = (place(light), scale * light.surface.unwrap_or_default());
+            [place.x, place.y, place.z, facing.x, facing.y, facing.z]
+        })
+        .collect();
+    let group = |members: Vec<usize>| -> Group {
+        let ends: [[f32; 2]; 6] = std::array::from_fn(|axis| {
+            let values = members.iter().map(|&member| points[member][axis]);
+            values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+        });
+        let sides = ends.map(|[low, high]| high - low);
+        let axis = (0..6).max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap_or(0);
+        let strength: f32 = members.iter().map(|&member| lights[member].intensity.element_sum()).sum();
+        let is_one = members.len() < 2;
+        let wrong = if is_one { -1.0 } else { strength * sides.iter().map(|side| side * side).sum::<f32>() };
+        Group { members, axis, middle: 0.5 * (ends[axis][0] + ends[axis][1]), wrong }
+    };
+    let mut groups = vec![group((0..lights.len()).collect())];
+    while groups.len() < LIGHTS {
+        let worst =
+            (0..groups.len()).max_by(|&a, &b| groups[a].wrong.total_cmp(&groups[b].wrong)).expect("there is one");
+        let Group { mut members, axis, middle, .. } = groups.swap_remove(worst);
+        let (mut low, mut high): (Vec<usize>, Vec<usize>) =
+            members.iter().partition(|&&member| points[member][axis] <= middle);
+        // All in one place.
+        if low.is_empty() || high.is_empty() {
+            high = members.split_off(members.len() / 2);
+            low = members;
+        }
+        groups.extend([group(low), group(high)]);
+    }
+    let mut merged: Vec<(usize, Light)> = groups.iter().map(|group| one(&lights, &points, &group.members)).collect();
+    merged.sort_by_key(|(first, _)| *first);
+    merged.into_iter().map(|(_, light)| light).collect()
+}
+
+/// The light of a group, and its number.
+fn one(lights: &[Light], points: &[[f32; 6]], members: &[usize]) -> (usize, Light) {
+    let strength = |member: usize| lights[member].intensity.element_sum();
+    let sum: f32 = members.iter().map(|&member| strength(member)).sum();
+    let middle: [f32; 6] =
+        std::array::from_fn(|axis| members.iter().map(|&member| strength(member) / sum * points[member][axis]).sum());
+    let distance = |member: usize| -> f32 { (0..6).map(|axis| (points[member][axis] - middle[axis]).powi(2)).sum() };
+    let nearest = *members.iter().min_by(|&&a, &&b| distance(a).total_cmp(&distance(b))).expect("groups have lights");
+    let intensity = members.iter().map(|&member| lights[member].intensity).sum::<Vec3>();
+    (nearest, Light { intensity, ..lights[nearest].clone() })
+}

@@ -1,0 +1,130 @@
+//! Lights for lamps: surfaces that emit light.
+//!
+//! Gather rays rarely find a small bright surface, and none are cast where the ambient light is constant. So every surface that emits light gets
+//! lights, whatever its size, its strength or its texture.
+//!
+//! 1. The triangles of a material that share corners form a lamp ([`connected`]), also those of instances, where they are placed.
+//! 2. Its triangles that face a similar way form a patch ([`patches`]): an emitter in one plane.
+//! 3. A large patch, or one that a texture makes uneven, is cut into pieces ([`pieces`]). Each has the mean radiance of its texels ([`glow`]).
+//! 4. A patch or piece becomes a rectangle, or a disc, of its area. A rectangle and a disc become just that.
+//! 5. If there are very many, those that are near each other and face the same way become one ([`merged`]). No light is lost by that.
+//!
+//! What surrounds the scene, such as a dome with an image of the sky, has no lights: every gather ray finds it.
+
+mod connected;
+mod glow;
+mod merged;
+mod patches;
+mod pieces;
+
+use glam::{DVec3, Vec3};
+
+use self::{connected::Lamp, glow::Glow};
+use crate::{Bounds, Geometry, Light, LightKind, Material, Scene};
+
+/// If there are more lights, triangles whose normals differ more form one patch.
+const MANY: usize = 32;
+/// Triangles whose normals deviate more, by cosine, begin a patch of their own. If there are too many lights, the next one counts.
+const SAME_PATCH: [f64; 5] = [0.85, 0.75, 0.6, 0.4, 0.2];
+/// Lights that are made at most: more are merged.
+pub const LIGHTS: usize = 128;
+/// A lamp surrounds the scene if it is larger than this share of the scene's diagonal,
+const AROUND: f64 = 0.5;
+/// and covers this share of half of the view from its middle: more than a plane can.
+const COVERED: f64 = 0.95;
+
+/// Makes lights for the lamps of a geometry, among the materials that are [marked](crate::Material::lamp). The mark of those that
+/// emit nothing is taken away. Triangles of a lamp that surrounds the scene get a material without mark if others have theirs.
+pub fn lamps(geometry: &mut Geometry) -> Vec<Light> {
+    for material in &mut geometry.materials {
+        material.lamp = may_be_lamp(material);
+    }
+    if !geometry.materials.iter().any(|material| material.lamp) {
+        return Vec::new();
+    }
+    let bounds = geometry.mesh.bounds();
+    let middle = bounds.center().as_dvec3();
+    let scene = Extent { middle, diagonal: f64::from(bounds.diagonal()), bounds };
+    let mut found = connected::lamps(geometry, &scene);
+    for (material, lamps) in &mut found {
+        let (around, others) = std::mem::take(lamps).into_iter().partition(|lamp| lamp.surrounds(geometry, &scene));
+        *lamps = others;
+        leave_to_rays(geometry, *material, &around, lamps.is_empty());
+    }
+    let count =
+        |alike: f64| -> usize { found.iter().flat_map(|(_, lamps)| lamps).map(|lamp| lamp.patches(alike).len()).sum() };
+    let alike = SAME_PATCH.into_iter().find(|&alike| count(alike) <= MANY).unwrap_or(SAME_PATCH[4]);
+    let mut lights = Vec::new();
+    for (number, lamps) in found {
+        let glow = Glow::of(geometry, number);
+        let own: Vec<Light> = lamps.iter().flat_map(|lamp| lamp.lights(&glow, geometry, &scene, alike)).collect();
+        let is_finite = own.iter().all(|light| light.intensity.is_finite());
+        geometry.materials[number as usize].lamp &= is_finite;
+        if is_finite {
+            lights.extend(own.into_iter().filter(is_usable));
+        }
+    }
+    merged::merged(lights)
+}
+
+/// Whether lights may stand for what surfaces of a material emit: not for what is merely shown as its image is.
+pub(crate) fn may_be_lamp(material: &Material) -> bool {
+    material.lamp && material.emission != Vec3::ZERO && material.emission_tinted == Vec3::ZERO
+}
+
+/// Takes the mark from a material, or gives some of its lamps another one without.
+fn leave_to_rays(geometry: &mut Geometry, material: u32, lamps: &[Lamp], are_all: bool) {
+    if lamps.is_empty() {
+        return;
+    }
+    if are_all {
+        geometry.materials[material as usize].lamp = false;
+        return;
+    }
+    let other = geometry.materials.len() as u32;
+    geometry.materials.push(geometry.materials[material as usize].clone().with_lamp(false));
+    for triangle in lamps.iter().flat_map(|lamp| &lamp.triangles) {
+        geometry.mesh.materials[triangle.stored] = other;
+    }
+}
+
+/// Whether a light has a size and a strength in single precision.
+fn is_usable(light: &Light) -> bool {
+    let has_size = match light.kind {
+        LightKind::Rectangle { half_u, half_v, .. } => half_u.cross(half_v).length_squared() > 0.0,
+        LightKind::Disk { radius, .. } => radius > 0.0,
+        _ => false,
+    };
+    has_size && light.intensity != Vec3::ZERO
+}
+
+impl Scene {
+    /// Makes lights for lamps, as opened files have them: surfaces that emit light. Their [materials](crate::Material::lamp) are
+    /// marked; lights that were made before are replaced.
+    pub fn add_lamps(&mut self) {
+        self.lights.list.retain(|light| !light.lamp);
+        let geometry = self.geometry_mut();
+        for material in &mut geometry.materials {
+            material.lamp = true;
+        }
+        let lights = lamps(geometry);
+        self.lights.list.extend(lights);
+    }
+}
+
+impl Geometry {
+    /// Whether there are surfaces that emit light for which no lights stand: only gather rays find them.
+    pub fn glows(&self) -> bool {
+        let glows: Vec<bool> =
+            self.materials.iter().map(|material| !material.lamp && material.emission != Vec3::ZERO).collect();
+        let is_used = |&material: &u32| glows.get(material as usize).is_some_and(|&glows| glows);
+        glows.contains(&true) && self.mesh.materials.iter().any(is_used)
+    }
+}
+
+/// The scene around.
+struct Extent {
+    bounds: Bounds,
+    middle: DVec3,
+    diagonal: f64,
+}
