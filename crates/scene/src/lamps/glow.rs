@@ -47,6 +47,7 @@ impl<'g> Glow<'g> {
         let [a, b, c] = uvs.map(|uv| size * uses.transform.transform_point2(uv));
         // 1. As many places as texels, in rows of a parallelogram of which the triangle is one half: the other one is turned onto it.
         let texels = 0.5 * (b - a).perp_dot(c - a).abs();
+        #[allow(clippy::manual_clamp, reason = "`clamp` would keep NaN")]
         let side = texels.max(PLACES[0]).min(PLACES[1]).sqrt().ceil() as u32;
         let step = 1.0 / side as f32;
         let mut sum = DVec3::ZERO;
