@@ -43,11 +43,31 @@ class Sun:
     """Its diameter, degrees."""
 
 
-class Lightmesh:
+class Program:
+    """The program, and a folder for its files."""
+
+    def __init__(self, options, folder):
+        self.options, self.folder = options, folder
+
+    def run(self, *words):
+        result = subprocess.run([str(word) for word in (self.options.lightmesh, *words)], capture_output=True, text=True)
+        if result.returncode:
+            raise SystemExit(result.stderr)
+
+    def image(self, file, size, words):
+        """Seconds of all threads, with opening and writing files, and linear colours."""
+        path, (width, height), before = self.folder / "image.exr", size, processor()
+        words = ["--size", f"{width}x{height}", "--filter", "box", *words, "--threads", self.options.threads]
+        self.run("render", file, "-o", path, *words, "--device", self.options.device, "--quiet")
+        return processor() - before, flip_evaluator.load(str(path))
+
+
+class Lightmesh(Program):
     name = "Lightmesh"
 
     def __init__(self, scene, options, folder):
-        self.options, self.folder, self.sky = options, folder, scene.sky
+        super().__init__(options, folder)
+        self.sky = scene.sky
         source, whole = scene.file(options.root, options.models), folder / "whole.glb"
         self.run("export", source, "-o", whole)
         self.file = folder / "diffuse.glb"
@@ -63,11 +83,6 @@ class Lightmesh:
         suns = [light for light in settings["lights"] if light["kind"] == "directional"] if scene.sky else []
         self.suns = [Sun(np.array(sun["direction"]), np.pi * np.array(sun["intensity"]), sun["angle"]) for sun in suns]
         self.panorama = self.paint_sky() if scene.sky else None
-
-    def run(self, *words):
-        result = subprocess.run([str(word) for word in (self.options.lightmesh, *words)], capture_output=True, text=True)
-        if result.returncode:
-            raise SystemExit(result.stderr)
 
     def call(self, file, image, words, view=None):
         """Renders; returns the statistics."""

@@ -29,7 +29,8 @@ class Mitsuba:
         # Only this one sees lights through what is cut out.
         kind = "volpath" if any(part.material.mask is not None for part in lightmesh.model.parts) else "path"
         self.integrator = mitsuba.load_dict({"type": kind, "max_depth": REFLECTIONS + 1, "rr_depth": 64})
-        self.endless = mitsuba.load_dict({"type": kind, "max_depth": 64, "rr_depth": 8})
+        self.endless = mitsuba.load_dict({"type": kind, "max_depth": -1, "rr_depth": 8})
+        self.particles = mitsuba.load_dict({"type": "ptracer", "max_depth": -1, "rr_depth": 8})
         self.sensor = self.look(lightmesh.camera)
 
     def look(self, camera):
@@ -52,6 +53,8 @@ class Mitsuba:
         scene = {"type": "scene"}
         for number, part in enumerate(lightmesh.model.parts):
             scene[f"part{number}"] = self.mesh(part)
+        if getattr(lightmesh, "sky_radiance", None):
+            scene["sky"] = {"type": "constant", "radiance": rgb([lightmesh.sky_radiance] * 3)}
         if lightmesh.panorama is not None:
             scene["sky"] = {"type": "envmap", "bitmap": self.mitsuba.Bitmap(lightmesh.panorama)}
         lower, upper = lightmesh.model.bounds
@@ -74,7 +77,7 @@ class Mitsuba:
         properties["bsdf"] = self.mitsuba.load_dict(self.surface(part))
         properties["face_normals"] = part.normals is None
         if part.material.emission.any():
-            properties["emitter"] = self.mitsuba.load_dict({"type": "area", "radiance": rgb(part.material.emission)})
+            properties["emitter"] = self.mitsuba.load_dict({"type": "area", "radiance": self.radiance(part.material)})
         given = {"has_vertex_normals": part.normals is not None, "has_vertex_texcoords": part.uvs is not None}
         mesh = self.mitsuba.Mesh("part", len(part.positions), len(part.triangles), props=properties, **given)
         if part.colors is not None:
@@ -90,10 +93,15 @@ class Mitsuba:
         values.update()
         return mesh
 
+    def radiance(self, material):
+        if material.glow is None:
+            return rgb(material.emission)
+        return {"type": "bitmap", "bitmap": self.mitsuba.Bitmap(tinted(material.glow, material.emission)), "raw": True}
+
     def surface(self, part):
         material, color = part.material, rgb(part.material.color)
         if material.image is not None:
-            encoded = self.mitsuba.Bitmap(tinted(material))
+            encoded = self.mitsuba.Bitmap(tinted(material.image, material.color))
             color = {"type": "bitmap", "bitmap": encoded, "raw": True}
         elif part.colors is not None:
             color = {"type": "mesh_attribute", "name": "vertex_color"}
@@ -125,11 +133,11 @@ def rgb(color):
     return {"type": "rgb", "value": [float(channel) for channel in color]}
 
 
-def tinted(material):
-    """Linear colours of the image times the material's."""
-    share = material.image[..., :3] / 255.0
+def tinted(image, color):
+    """Linear colours of the image times another one."""
+    share = image[..., :3] / 255.0
     linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-    return (linear * material.color).astype(np.float32)
+    return (linear * color).astype(np.float32)
 
 
 def finer(mask):

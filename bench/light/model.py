@@ -18,6 +18,8 @@ class Material:
     color: np.ndarray
     emission: np.ndarray
     image: np.ndarray | None = None
+    glow: np.ndarray | None = None
+    """An image that `emission` is multiplied by."""
     mask: np.ndarray | None = None
     cutoff: float = 0.5
 
@@ -127,6 +129,8 @@ def material(gltf, binary, entry):
     made = Material(np.array(own["kd"], np.float32), np.array(own["emission"], np.float32))
     if "baseColorTexture" in pbr:
         made.image = image(gltf, binary, pbr["baseColorTexture"]["index"])
+    if "emissiveTexture" in entry:
+        made.glow = image(gltf, binary, entry["emissiveTexture"]["index"])
     if entry.get("alphaMode") == "MASK":
         made.mask, made.cutoff = opacities(made.image, "alpha"), entry["alphaCutoff"]
     elif "cutoff" in own.get("opacity", {}):
