@@ -46,11 +46,11 @@ class Sun:
 class Program:
     """The program, and a folder for its files."""
 
-    def __init__(self, options, folder):
-        self.options, self.folder = options, folder
+    def __init__(self, options, folder, binary=None):
+        self.options, self.folder, self.binary = options, folder, binary or options.lightmesh
 
     def run(self, *words):
-        result = subprocess.run([str(word) for word in (self.options.lightmesh, *words)], capture_output=True, text=True)
+        result = subprocess.run([str(word) for word in (self.binary, *words)], capture_output=True, text=True)
         if result.returncode:
             raise SystemExit(result.stderr)
 
@@ -60,6 +60,12 @@ class Program:
         words = ["--size", f"{width}x{height}", "--filter", "box", *words, "--threads", self.options.threads]
         self.run("render", file, "-o", path, *words, "--device", self.options.device, "--quiet")
         return processor() - before, flip_evaluator.load(str(path))
+
+    def seconds(self, file, size, words):
+        """Seconds of all threads, with opening and writing; on a GPU those of the render alone, by the program's own clock."""
+        stats = self.folder / "stats.json"
+        seconds, _ = self.image(file, size, [*words, "--stats", stats])
+        return seconds if self.options.device == "cpu" else json.loads(stats.read_text())["seconds"]["render"]
 
 
 class Lightmesh(Program):

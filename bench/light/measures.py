@@ -24,6 +24,7 @@ def all_of(room, truth, image):
     row = {
         "flip": above_floor(truth.first, truth.second, image, room.exposure),
         "flip, half size": above_floor(*map(halved, (truth.first, truth.second, image)), room.exposure),
+        "flip to both": flip(truth.mean, image, room.exposure),
         "noise": flip(truth.first, truth.second, room.exposure),
         "mean": float(cut(image).mean() / cut(truth.mean).mean()) if truth.mean.any() else None,
     }

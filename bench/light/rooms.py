@@ -50,20 +50,26 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
-    add("--lightmesh", default=ROOT / "target/release/lightmesh", help="the program")
-    add("--references", type=Path, default=ROOT / "target/references", help="a folder for the truth, which is kept")
+    common(parser)
     add("--only", nargs="+", choices=[room.name for room in ROOMS], help="scenes")
     add("--size", type=int, nargs=2, default=[320, 240], help="width and height")
     add("--qualities", nargs="*", default=["good"], help="Lightmesh's")
+    add("--make-only", action="store_true", help="the truth alone")
+    return parser.parse_args()
+
+
+def common(parser):
+    """Options that `marks.py` has, too."""
+    add = parser.add_argument
+    add("--lightmesh", default=ROOT / "target/release/lightmesh", help="the program")
+    add("--references", type=Path, default=ROOT / "target/references", help="a folder for the truth, which is kept")
     add("--ambient-light", default="mesh", choices=["mesh", "rays"], help="of the images")
     add("--pictures", type=Path, help="a folder for the images, as they are compared")
     add("--threads", type=int, default=2, help="of each program")
     add("--device", choices=["cpu", "cuda"], default="cpu", help="of Lightmesh and Mitsuba")
     add("--noise", type=float, default=0.02, help="mean FLIP of two seeds at which the truth needs no more samples")
     add("--minutes", type=float, default=0, help="to spend on samples for a truth that is noisier; 0 takes what is there")
-    add("--make-only", action="store_true", help="the truth alone")
     add("--words", default="", help="more flags for `lightmesh render`, in one string")
-    return parser.parse_args()
 
 
 def render(room, program, quality, options):
