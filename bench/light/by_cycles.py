@@ -1,4 +1,4 @@
-"""Blender's side: Cycles, with paths as long as Lightmesh's."""
+"""Blender's side: Cycles."""
 
 import math
 import time
@@ -6,8 +6,8 @@ import time
 import flip_evaluator
 import numpy as np
 
-from by_mitsuba import REFLECTIONS
-
+ENDLESS = 65
+"""Reflections after which nothing is left to see."""
 # Blender has z up.
 TURN = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)
 
@@ -35,7 +35,7 @@ class Cycles:
         cycles.device, cycles.use_adaptive_sampling = "CPU", False
         if options.device == "cuda":
             self.move_to_gpu()
-        cycles.max_bounces = cycles.diffuse_bounces = REFLECTIONS - 1
+        cycles.max_bounces = cycles.diffuse_bounces = (options.reflections or ENDLESS) - 1
         cycles.transparent_max_bounces = 64
         cycles.denoiser, cycles.denoising_input_passes = "OPENIMAGEDENOISE", "RGB_ALBEDO_NORMAL"
         cycles.pixel_filter_type = "BOX"

@@ -84,7 +84,7 @@ class Lightmesh(Program):
         settings = self.call(source, folder / "first.exr", ["--size", "8x6", "--mode", "ray-trace"])["settings"]
         view = settings["camera"]
         self.camera = Camera(*(np.array(view[key]) for key in ("position", "direction", "up")), view["vfov"])
-        numbers = [*self.camera.position, *(self.camera.position + self.camera.direction)]
+        numbers = [*self.camera.position.tolist(), *(self.camera.position + self.camera.direction).tolist()]
         self.view = ["--camera", f"{','.join(map(repr, numbers[:3]))};{','.join(map(repr, numbers[3:]))};{self.camera.vfov}"]
         suns = [light for light in settings["lights"] if light["kind"] == "directional"] if scene.sky else []
         self.suns = [Sun(np.array(sun["direction"]), np.pi * np.array(sun["intensity"]), sun["angle"]) for sun in suns]

@@ -1,10 +1,9 @@
-"""Mitsuba's side: a path tracer whose paths are as long as Lightmesh's."""
+"""Mitsuba's side: a path tracer, and one whose paths begin at the lights."""
 
 import time
 
 import numpy as np
 
-REFLECTIONS = 4
 FAR = 1e4
 """The distance of the sun's disc, in diagonals of the scene."""
 FINER = 8
@@ -28,7 +27,8 @@ class Mitsuba:
         self.compiled, self.scene = compiled, mitsuba.load_dict(self.describe(lightmesh))
         # Only this one sees lights through what is cut out.
         kind = "volpath" if any(part.material.mask is not None for part in lightmesh.model.parts) else "path"
-        self.integrator = mitsuba.load_dict({"type": kind, "max_depth": REFLECTIONS + 1, "rr_depth": 64})
+        limit = getattr(options, "reflections", None)
+        self.integrator = mitsuba.load_dict({"type": kind, "max_depth": limit + 1 if limit else -1, "rr_depth": 64 if limit else 8})
         self.endless = mitsuba.load_dict({"type": kind, "max_depth": -1, "rr_depth": 8})
         self.particles = mitsuba.load_dict({"type": "ptracer", "max_depth": -1, "rr_depth": 8})
         self.sensor = self.look(lightmesh.camera)

@@ -17,12 +17,12 @@ import tempfile
 import time
 from pathlib import Path
 
-import flip_evaluator
 import numpy as np
 
 from by_lightmesh import Lightmesh
 from by_mitsuba import Mitsuba
 from scenes import SCENES
+from shown import flip, keep
 
 ROOT = Path(__file__).resolve().parents[2]
 TITLES = ["scene", "program", "seconds", "processor", "mean FLIP", "mean difference", "mean radiance"]
@@ -39,7 +39,7 @@ def main():
             rows.append(row)
             print(line([row[title] for title in TITLES]), flush=True)
         if options.output:
-            settings = {key: getattr(options, key) for key in ("size", "samples", "threads", "device", "repeat")}
+            settings = {key: getattr(options, key) for key in ("size", "samples", "reflections", "threads", "device", "repeat")}
             options.output.write_text(json.dumps({"settings": settings, "rows": rows}, indent=1) + "\n")
     print(table(rows))
 
@@ -55,6 +55,7 @@ def arguments():
     add("--size", type=int, nargs=2, default=[320, 240], help="width and height")
     add("--samples", type=int, default=1024, help="samples of a pixel of the reference")
     add("--at-once", type=int, default=16, help="so many of them in one go: memory")
+    add("--reflections", type=int, help="of all paths but Lightmesh's, and of the reference; default: any number")
     add("--counts", type=int, nargs="*", default=[16, 64], help="samples of a pixel of path tracers")
     add("--qualities", nargs="*", default=["good", "final"], help="Lightmesh's")
     add("--threads", type=int, default=2, help="of each program")
@@ -88,7 +89,8 @@ def compare(scene, options):
                     render = lambda seed: cycles.render(count, seed, denoise)
                     name = f"Cycles, {count} samples{', denoised' if denoise else ''}"
                     yield judge.row(name, *timed(render, options))
-        yield judge.row("any number of reflections", None, None, mitsuba.mean(64, options.at_once, mitsuba.endless))
+        if options.reflections:
+            yield judge.row("any number of reflections", None, None, mitsuba.mean(64, options.at_once, mitsuba.endless))
 
 
 def timed(render, options):
@@ -107,7 +109,8 @@ class Judge:
 
     def __init__(self, scene, options, mitsuba):
         self.scene, self.options = scene, options
-        kept = options.pictures / f"{scene.name}-{options.samples}.npy" if options.pictures else None
+        limit = f"-{options.reflections}" if options.reflections else ""
+        kept = options.pictures / f"{scene.name}-{options.samples}{limit}.npy" if options.pictures else None
         if kept and kept.exists():
             self.reference = np.load(kept)
         else:
@@ -120,7 +123,6 @@ class Judge:
     def row(self, program, seconds, busy, image):
         image = np.asarray(image, np.float32)
         self.keep(program, image)
-        flip = flip_evaluator.evaluate(self.shown(self.reference), self.shown(image), "LDR")[1]
         # What is far beyond white, such as lamps that are seen, would outweigh the rest.
         reference, image = (np.minimum(linear, 2 / self.gain) for linear in (self.reference, image))
         return {
@@ -128,7 +130,7 @@ class Judge:
             "program": program,
             "seconds": seconds,
             "processor": busy,
-            "mean FLIP": float(flip),
+            "mean FLIP": flip(self.reference, image, self.scene.exposure),
             "mean difference": float(abs(image - reference).mean() / reference.mean()),
             "mean radiance": float(image.mean() / reference.mean()),
         }
@@ -137,18 +139,10 @@ class Judge:
     def gain(self):
         return 2.0**self.scene.exposure
 
-    def shown(self, linear):
-        """The image as it is shown."""
-        share = np.clip(self.gain * linear, 0, 1)
-        return np.where(share <= 0.0031308, 12.92 * share, 1.055 * share ** (1 / 2.4) - 0.055).astype(np.float32)
-
     def keep(self, program, image):
         if self.options.pictures:
-            from PIL import Image
-
             name = program.replace(", ", "-").replace(" ", "-").lower()
-            shown = np.uint8(255 * self.shown(image) + 0.5)
-            Image.fromarray(shown).save(self.options.pictures / f"{self.scene.name}-{name}.png")
+            keep(self.options.pictures / f"{self.scene.name}-{name}.png", image, self.scene.exposure)
 
 
 def line(cells):

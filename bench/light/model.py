@@ -56,6 +56,9 @@ def make_diffuse(source, target):
             own[key] = [0, 0, 0]
         own["ka"] = own["kd"]
         material["pbrMetallicRoughness"]["roughnessFactor"] = 1.0
+        if any(own["emission"]):
+            # The others' surfaces shine to their front alone.
+            material["doubleSided"] = False
         if own.get("dielectric") or material.get("alphaMode") == "BLEND" or "filter" in own.get("opacity", {}):
             through.add(index)
     for mesh in gltf["meshes"]:

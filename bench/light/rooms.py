@@ -68,7 +68,7 @@ def common(parser):
     add("--threads", type=int, default=2, help="of each program")
     add("--device", choices=["cpu", "cuda"], default="cpu", help="of Lightmesh and Mitsuba")
     add("--noise", type=float, default=0.02, help="mean FLIP of two seeds at which the truth needs no more samples")
-    add("--minutes", type=float, default=0, help="to spend on samples for a truth that is noisier; 0 takes what is there")
+    add("--minutes", type=float, default=0, help="for each truth that is missing or noisier; 0 takes what is there")
     add("--words", default="", help="more flags for `lightmesh render`, in one string")
 
 

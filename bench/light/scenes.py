@@ -70,3 +70,9 @@ ROOMS = [
     Room("uplight", 2.5, hidden=True),
     Room("sealed", 0.0, sky=True, reflectance=0.0),
 ]
+
+BESIDE = ("room-window", "room-door", "glowing-ceiling", "strip")
+"""Rooms that `light.py` renders by all programs."""
+SCENES += [
+    Scene(room.name, f"bench/light/scenes/{room.name}.toml", room.exposure, "uniform" if room.sky else None) for room in ROOMS if room.name in BESIDE
+]

@@ -15,8 +15,10 @@ from by_mitsuba import Mitsuba
 from shown import flip
 
 FOLDER = Path(__file__).parent / "scenes"
-AT_ONCE = 32
-"""Samples of a pixel in one go: memory."""
+PATHS = 32 * 320 * 240
+"""In one go: memory."""
+CHECKED = 128
+"""Samples of a pixel after which the noise is looked at."""
 
 
 @dataclass
@@ -78,32 +80,44 @@ def glowing(low, high, inside):
 
 
 def of(room, lightmesh, folder, options):
-    """The kept truth; what is missing is rendered, until the noise is below `options.noise`, or `options.minutes` have passed."""
+    """The kept truth. If `options.minutes` is not 0, samples are added until the noise is below `options.noise`, or the time has passed."""
     width, height = options.size
     kept = options.references / f"{room.name}-{width}x{height}.npz"
-    digest = hashlib.sha256(file(room).read_bytes() + repr((room.sky, room.soft_boxes, room.opening)).encode()).hexdigest()
-    sums, samples = [np.zeros((height, width, 3)), np.zeros((height, width, 3))], 0
-    if kept.exists():
-        stored = np.load(kept)
-        if stored["digest"] == digest:
-            samples = int(stored["samples"])
-            sums = [samples * stored[name].astype(np.float64) for name in ("first", "second")]
-    if not samples or (options.minutes and noise(room, sums, samples) > options.noise):
-        mitsuba = Mitsuba(given(room, lightmesh, folder), options)
-        integrator = mitsuba.particles if room.hidden else mitsuba.endless
-        end = time.monotonic() + 60 * options.minutes
+    sums, samples = stored(kept, room, options.size)
+    if not samples and not options.minutes:
+        raise SystemExit(f"{kept}: there is no truth of this scene and size; --minutes 10 renders it, with Mitsuba")
+    if options.minutes and (not samples or noise(room, sums, samples) > options.noise):
+        mitsuba, end = Mitsuba(given(room, lightmesh, folder), options), time.monotonic() + 60 * options.minutes
+        integrator, at_once = mitsuba.particles if room.hidden else mitsuba.endless, max(PATHS // (width * height), 1)
         while not samples or (time.monotonic() < end and noise(room, sums, samples) > options.noise):
-            for _ in range(4 if samples else 1):
+            for _ in range(CHECKED // at_once if samples else 1):
                 for half in (0, 1):
                     # Seeds that no other call uses, whatever the number of samples that are kept.
-                    seed = 2 * (samples // AT_ONCE) + half
-                    sums[half] += AT_ONCE * mitsuba.render(AT_ONCE, seed, integrator)[1].astype(np.float64)
-                samples += AT_ONCE
+                    seed = 2 * (samples // at_once) + half
+                    sums[half] += at_once * mitsuba.render(at_once, seed, integrator)[1].astype(np.float64)
+                samples += at_once
+                if time.monotonic() > end:
+                    break
         options.references.mkdir(parents=True, exist_ok=True)
         halves = [np.float32(one / samples) for one in sums]
-        np.savez_compressed(kept, first=halves[0], second=halves[1], samples=samples, digest=digest)
+        np.savez_compressed(kept, first=halves[0], second=halves[1], samples=samples, digest=digest(room))
         print(f"{room.name}: {samples} samples, noise {noise(room, sums, samples):.4f}", flush=True)
     return Truth(*(np.float32(one / samples) for one in sums))
+
+
+def stored(kept, room, size):
+    """Sums over samples of both seeds, and how many samples."""
+    if kept.exists():
+        found = np.load(kept)
+        if found["digest"] == digest(room):
+            samples = int(found["samples"])
+            return [samples * found[name].astype(np.float64) for name in ("first", "second")], samples
+    return [np.zeros((size[1], size[0], 3)) for _ in range(2)], 0
+
+
+def digest(room):
+    """Of all that the truth depends on."""
+    return hashlib.sha256(file(room).read_bytes() + repr((room.sky, room.soft_boxes, room.opening)).encode()).hexdigest()
 
 
 def noise(room, sums, samples):
