@@ -4,7 +4,7 @@
     python bench/light/marks.py --lightmesh target/release/lightmesh --references FOLDER -o bench/light/marks.json
 
 Values of other builds, sizes, devices and points in the file are kept; `--build NAME` names those that are measured. `--only` takes some of
-the points. The exit code is 1 if a mark is not held. README.md says what each point is.
+the points. The exit code is 1 if a mark is not held or a truth is missing. README.md says what each point is.
 """
 
 import argparse
@@ -29,6 +29,7 @@ from scenes import ROOMS, Scene
 from table import markdown, merged, row
 
 ROOT = Path(__file__).resolve().parents[2]
+README, BEGIN, END = Path(__file__).with_name("README.md"), "<!-- marks -->", "<!-- end of marks -->"
 THICKNESSES, TURNS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5), (0, 10, 20, 30, 45, 55, 70, 85)
 SLABS = (0, 0.02, 0.2, 0.3, 3)
 SUNS = (0, 0.533, 5, 30, 60, 90, 120, 150, 179)
@@ -57,7 +58,13 @@ class Measurement:
             if room.name == "sealed" or (self.options.scenes and room.name not in self.options.scenes):
                 continue
             self.options.size = self.size
-            true = truth.of(room, self.program.run, self.folder, self.options)
+            try:
+                true = truth.of(room, self.program.run, self.folder, self.options)
+            except truth.Missing as missing:
+                # Other scenes may have theirs, but not all is measured.
+                print(missing, file=sys.stderr)
+                self.options.missing = True
+                continue
             seconds, image = render(room, self.program, self.quality, self.options)
             found = measures.all_of(room, true, image)
             if self.options.pictures:
@@ -179,8 +186,12 @@ def main():
                 rows = merged(rows, made)
                 if options.output:
                     options.output.write_text(written(rows))
-    print(markdown(rows, options.build, options.before))
-    return int(any(row["holds"] is False for row in rows if row["build"] == options.build))
+    table = markdown(rows, options.build, options.before)
+    print(table)
+    if options.readme:
+        before, _, rest = README.read_text().partition(BEGIN)
+        README.write_text(f"{before}{BEGIN}\n{table}\n{END}{rest.partition(END)[2]}")
+    return int(options.missing or any(row["holds"] is False for row in rows if row["build"] == options.build))
 
 
 def written(rows):
@@ -204,14 +215,17 @@ def arguments():
     add("-o", "--output", type=Path, help="a JSON file with the values; those that are not measured now are kept")
     add("--build", default="now", help="what to call this build's values")
     add("--before", default="before", help="the build that the table shows beside it")
-    add("--only", nargs="+", choices=GROUPS, default=GROUPS, help="points")
+    add("--only", nargs="*", choices=GROUPS, default=GROUPS, help="points; none prints the table of what is in the file")
+    add("--readme", action="store_true", help="write the table into README.md")
     add("--scenes", nargs="+", help="of rooms")
     add("--sizes", nargs="+", type=lambda text: [int(one) for one in text.split("x")], default=[[320, 240], [1280, 960]], help="as 320x240")
     add("--qualities", nargs="*", default=["good", "final"], help="Lightmesh's")
     add("--against", type=Path, help="another build of the program, for times")
     add("--models", type=Path, default=ROOT / "../shared/scenes", help="a folder with models")
     add("--hasty", action="store_true", help="times of panes and veils from a single run")
-    return parser.parse_args()
+    options = parser.parse_args()
+    options.missing = False
+    return options
 
 
 if __name__ == "__main__":

@@ -12,6 +12,8 @@ DARK = 1 / 50
 """Of white: darker blocks don't count."""
 CUT = 2
 """Times white: what is brighter counts as that, since lamps that are seen would outweigh the rest."""
+SKY = 1.1
+"""Times what surfaces can show: the truth is brighter where it shows the sky."""
 EXCESS = 1.001
 """Times what energy allows."""
 
@@ -30,7 +32,7 @@ def all_of(room, truth, image):
     }
     row["block"], row["block at"] = worst_block(truth.mean, image, white)
     row["rms"] = blocks_rms(truth.mean, image, white)
-    row["too bright"] = too_bright(room, image)
+    row["too bright"] = too_bright(room, truth.mean, image)
     return row
 
 
@@ -59,8 +61,7 @@ def ratios(truth, image, white):
 def worst_block(truth, image, white):
     """The ratio that is farthest from 1, and the middle of its block in pixels, from the left and the top."""
     ratio, _ = ratios(truth, image, white)
-    off = np.maximum(ratio, 1 / np.maximum(ratio, 1e-6))
-    row, column = np.unravel_index(np.argmax(off), off.shape)
+    row, column = np.unravel_index(np.argmax(abs(ratio - 1)), ratio.shape)
     return float(ratio[row, column]), [int(SIDE * column + SIDE // 2), int(SIDE * row + SIDE // 2)]
 
 
@@ -69,14 +70,13 @@ def blocks_rms(truth, image, white):
     return float(np.sqrt(((ratio[counts] - 1) ** 2).mean())) if counts.any() else 0.0
 
 
-def too_bright(room, image):
+def too_bright(room, truth, image):
     """The share of pixels that show more than their surfaces can of a sky of radiance 1; None where there is other light."""
     if room.reflectance is None:
         return None
-    light = image.max(axis=2)
-    # A pixel whose surface ends in it shows some of the sky, too.
-    sky = near(light >= 0.999)
-    return float(((light > EXCESS * room.reflectance) & ~sky).mean())
+    # A pixel in which a surface ends shows some of the sky, too.
+    sky = near(truth.max(axis=2) > SKY * room.reflectance)
+    return float(((image.max(axis=2) > EXCESS * room.reflectance) & ~sky).mean())
 
 
 def near(mask):

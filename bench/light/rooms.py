@@ -36,7 +36,10 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
             program = Program(options, folder)
-            true = truth.of(room, program.run, folder, options)
+            try:
+                true = truth.of(room, program.run, folder, options)
+            except truth.Missing as missing:
+                sys.exit(str(missing))
             if options.pictures:
                 options.pictures.mkdir(parents=True, exist_ok=True)
                 shown.keep(options.pictures / f"{room.name}-truth.png", true.mean, room.exposure)

@@ -65,7 +65,7 @@ def merged(old, new):
 def markdown(rows, build, before):
     """A line for each point: the worst of its values, where it is, and the one before."""
     lines = [
-        f"| point | good | final | mark | holds | where it is worst | {before}, good |",
+        f"| point | {build}, good | final | mark | holds | where it is worst | {before}, good |",
         "|---|--:|--:|---|---|---|--:|",
     ]
     for mark in MARKS:

@@ -45,6 +45,10 @@ class Truth:
         return (self.first + self.second) / 2
 
 
+class Missing(Exception):
+    """There is no truth of a scene and size, and no time to render it."""
+
+
 def file(room):
     return FOLDER / f"{room.name}.toml"
 
@@ -85,7 +89,7 @@ def of(room, lightmesh, folder, options):
     kept = options.references / f"{room.name}-{width}x{height}.npz"
     sums, samples = stored(kept, room, options.size)
     if not samples and not options.minutes:
-        raise SystemExit(f"{kept}: there is no truth of this scene and size; --minutes 10 renders it, with Mitsuba")
+        raise Missing(f"{kept}: there is no truth of this scene and size; --minutes 10 renders it, with Mitsuba")
     if options.minutes and (not samples or noise(room, sums, samples) > options.noise):
         mitsuba, end = Mitsuba(given(room, lightmesh, folder), options), time.monotonic() + 60 * options.minutes
         integrator, at_once = mitsuba.particles if room.hidden else mitsuba.endless, max(PATHS // (width * height), 1)
