@@ -84,6 +84,8 @@ impl Weighed {
     /// Adds the weights of the samples of a set, of which those with their `bits` are seen.
     #[inline(never)]
     pub(crate) fn add(&mut self, weights: &Weights, sight: &Sight, set: &SampleRows, bits: &[u32]) {
+        // Set by set, as kernels do.
+        let (mut all, mut lit) = (0.0, 0.0);
         let mut word = 0;
         for row in 0..set.rows as usize {
             while row >= set.ends[word] as usize {
@@ -96,13 +98,15 @@ impl Weighed {
                 rest &= rest - 1;
                 let weight = weights.of(sight.scaled_sample(set, row, place as f32, offset));
                 if weight > 0.0 {
-                    self.all += weight;
+                    all += weight;
                     if bits[word] >> (set.place[row] + place) & 1 != 0 {
-                        self.lit += weight;
+                        lit += weight;
                     }
                 }
             }
         }
+        self.all += all;
+        self.lit += lit;
     }
 
     /// The visible share of the light: exactly 1 for all of it.
