@@ -17,12 +17,10 @@ use lightmesh_scene::{Bounds, Light, LightKind};
 use super::Aim;
 use super::rows::Rows;
 use super::terminator::ShadowPoint;
-use super::weights::{Weighed, Weights};
 use crate::accel::Region;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
 use crate::sampling::{disk_radius, light_center, random_bits};
-use crate::shading::irradiance::may_be_near;
 use crate::simd::{Axes, difference, dot, scaled, splat};
 use crate::surface::SurfacePoint;
 
@@ -221,19 +219,6 @@ impl<'a> Emitter<'a> {
     /// Number of its samples.
     pub(crate) fn samples(&self) -> u32 {
         self.samples
-    }
-
-    /// What `point` sees of its samples by their weights, before any are looked at; `None` if they are counted from everywhere.
-    #[inline(always)]
-    pub(crate) fn weighed(&self, geometry: &PreparedGeometry, point: &SurfacePoint) -> Option<Weighed> {
-        let weighed = || Weighed::new(self.light, point, geometry.reach(point.origin));
-        (!self.is_point() && may_be_near(self.light)).then(weighed)
-    }
-
-    /// The weights of its samples.
-    #[inline(always)]
-    pub(crate) fn weights(&self, point: &SurfacePoint, sight: &Sight) -> Weights {
-        Weights::new(self.light, point, sight)
     }
 
     /// The share of `seen` of its samples: exactly 1 for all of them.

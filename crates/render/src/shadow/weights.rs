@@ -9,9 +9,10 @@ use glam::Vec3;
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::{Light, LightKind};
 
-use super::sight::Sight;
+use super::sight::{Emitter, Sight};
+use crate::prepared::PreparedGeometry;
 use crate::sampling::light_center;
-use crate::shading::irradiance::nearness;
+use crate::shading::irradiance::{may_be_near, nearness};
 use crate::surface::SurfacePoint;
 
 /// What a surface point sees of the samples of a light, set by set.
@@ -36,6 +37,21 @@ pub(crate) struct Weights {
     even: bool,
     /// Of vectors to samples: what makes them about as long as 1.
     scale: f32,
+}
+
+impl Emitter<'_> {
+    /// What `point` sees of its samples by their weights, before any are looked at; `None` if they are counted from everywhere.
+    #[inline(always)]
+    pub(crate) fn weighed(&self, geometry: &PreparedGeometry, point: &SurfacePoint) -> Option<Weighed> {
+        let weighed = || Weighed::new(self.light().0, point, geometry.reach(point.origin));
+        (!self.is_point() && may_be_near(self.light().0)).then(weighed)
+    }
+
+    /// The weights of its samples.
+    #[inline(always)]
+    pub(crate) fn weights(&self, point: &SurfacePoint, sight: &Sight) -> Weights {
+        Weights::new(self.light().0, point, sight)
+    }
 }
 
 impl Weights {
