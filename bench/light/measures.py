@@ -75,7 +75,7 @@ def too_bright(room, truth, image):
     if room.reflectance is None:
         return None
     # A pixel in which a surface ends shows some of the sky, too.
-    sky = near(truth.max(axis=2) > SKY * room.reflectance)
+    sky = near(near(truth.max(axis=2) > SKY * room.reflectance))
     return float(((image.max(axis=2) > EXCESS * room.reflectance) & ~sky).mean())
 
 
