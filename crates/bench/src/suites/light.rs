@@ -267,7 +267,7 @@ mod tests {
         };
         assert!(value("a tenth", "rays") > 1.5 * value("none", "rays"));
         assert!(value("mesh", "gather_rays") > 1000.0 && value("constant", "gather_rays") == 0.0);
-        assert_eq!((value("10 bulbs", "lights"), value("1000 bulbs", "lights")), (32.0, 32.0));
+        assert_eq!((value("10 bulbs", "lights"), value("1000 bulbs", "lights")), (40.0, 128.0));
     }
 
     #[test]
