@@ -21,9 +21,8 @@ use glam::Vec3;
 use lightmesh_layout::constants::{BOUNCE_FINER, BOUNCE_SIDE, ORDERS as MOST_ORDERS};
 use rayon::prelude::*;
 
-use super::cells::{Asked, CellHasher, Site, nearest_of_kind};
+use super::cells::{Asked, CellHasher, KIND_BITS, NAME_BITS, Site, nearest_of_kind};
 use super::rays::{Fan, Seen, Spot};
-use super::saved::{KIND_BITS, NAME_BITS};
 use super::scene::Scene;
 use crate::stages::primary_rays::cpu::batch;
 

@@ -28,6 +28,14 @@ pub(super) type Kind = u8;
 /// A cell in 58 bits: level, then index along z, y and x.
 pub(super) type CellKey = u64;
 
+/// Bits of a kind of surface in names.
+pub(super) const KIND_BITS: u32 = 4;
+pub(super) const KIND: u64 = (1 << KIND_BITS) - 1;
+/// The most levels by which the cell of a node is smaller than what was asked at first, as bits of its name.
+pub(super) const FINER: u64 = 3;
+/// Bits of names of nodes that follow that of their cell: these levels, and the kind.
+pub(super) const NAME_BITS: u32 = KIND_BITS + FINER.count_ones();
+
 /// The largest power of two up to `width`, as its exponent, and the rest, from 1 to 2.
 #[inline(always)]
 pub(super) fn level_of(width: f32) -> (i32, f32) {

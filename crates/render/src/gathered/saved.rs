@@ -12,7 +12,7 @@ use lightmesh_layout::gathered::{Bins as BinsRecord, FarLight, SurfaceLight as L
 use super::SurfaceLight;
 pub(crate) use super::bounce::ORDERS;
 use super::bounce::{Bounce, Node};
-use super::cells::{CellKey, Cells, Site};
+use super::cells::{CellKey, Cells, FINER, KIND, KIND_BITS, NAME_BITS, Site};
 use super::far::Far;
 use super::light::{Bins, Light};
 use crate::surface::SurfacePoint;
@@ -68,12 +68,6 @@ pub struct SavedNode {
     pub values: [[f32; 3]; ORDERS],
 }
 
-/// Bits of a kind of surface in names.
-pub(super) const KIND_BITS: u32 = 4;
-const KIND: u64 = (1 << KIND_BITS) - 1;
-const FINER: u64 = 3;
-/// Bits of names of nodes that follow that of their cell: by how many levels this is smaller than what was asked at first, and the kind.
-pub(super) const NAME_BITS: u32 = KIND_BITS + FINER.count_ones();
 /// Cells have smaller keys than this: no level has all seven bits.
 pub(crate) const END_OF_CELLS: CellKey = 127 << (3 * CELL_INDEX_BITS);
 /// Nodes have smaller names than this.

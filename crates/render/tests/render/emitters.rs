@@ -211,5 +211,5 @@ fn what_surrounds_the_scene_is_gathered() {
     assert!(scene.lights.is_empty() && !scene.complete(Up::Y).lights);
     let settings = Settings::default().with_size([1, 1]).with_aa(1);
     let frame = Renderer::new(Device::Cpu).unwrap().render(&scene, &settings).unwrap();
-    assert_near(f64::from(frame.color()[0][0]), 1.0, 0.04);
+    assert_near(f64::from(frame.color()[0][0]), 1.0, 0.01);
 }

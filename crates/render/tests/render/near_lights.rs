@@ -23,7 +23,8 @@ impl Panel {
         let light = Light::rectangle(self.center.as_vec3(), self.half_u.as_vec3(), self.half_v.as_vec3()).unwrap();
         let area = 4.0 * self.half_u.cross(self.half_v).length();
         let light = light.with_falloff(Falloff::InverseSquare).with_intensity(Vec3::splat(area as f32));
-        self.front.map_or(light.clone(), |front| light.with_surface(front.as_vec3()))
+        let even = light.clone().with_one_sided(false);
+        self.front.map_or(even, |front| light.with_surface(front.as_vec3()))
     }
 
     /// What a white surface shows, if a part of the light is `seen`.

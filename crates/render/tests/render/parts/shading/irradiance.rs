@@ -68,7 +68,8 @@ fn rectangles_give_what_their_points_give() {
     let (u, v) = (DVec3::new(0.5, 0.0, 0.0), DVec3::new(0.0, 0.0, 0.3));
     let light = Light::rectangle(Vec3::ZERO, u.as_vec3(), v.as_vec3()).unwrap().with_falloff(Falloff::InverseSquare);
     for front in [None, Some(DVec3::NEG_Y), Some(DVec3::Y)] {
-        let light = front.map_or(light.clone(), |front| light.clone().with_surface(front.as_vec3()));
+        let even = light.clone().with_one_sided(false);
+        let light = front.map_or(even, |front| light.clone().with_surface(front.as_vec3()));
         let sum = |way: DVec3, normal: DVec3| {
             mean_of(middles().map(|(x, y)| way + (2.0 * x - 1.0) * u + (2.0 * y - 1.0) * v), front, normal)
         };
@@ -84,7 +85,8 @@ fn discs_give_what_their_points_give() {
     let (tangent, bitangent) = axis.any_orthonormal_pair();
     let light = Light::disk(Vec3::ZERO, axis.as_vec3(), 0.4).unwrap().with_falloff(Falloff::InverseSquare);
     for front in [None, Some(axis), Some(-axis)] {
-        let light = front.map_or(light.clone(), |front| light.clone().with_surface(front.as_vec3()));
+        let even = light.clone().with_one_sided(false);
+        let light = front.map_or(even, |front| light.clone().with_surface(front.as_vec3()));
         let sum = |way: DVec3, normal: DVec3| {
             let place = |(x, y): (f64, f64)| {
                 let (sin, cos) = (2.0 * PI * x).sin_cos();
