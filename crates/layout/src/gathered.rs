@@ -135,8 +135,8 @@ records! {
         node: u32,
         /// How much of the other light is reflected.
         kd: Vec3,
-        /// Padding to a multiple of sixteen bytes.
-        spare: u32,
+        /// 1: no smaller cells are asked.
+        settled: u32,
     }
 
     /// What arrives at a site that rays of others hit.
@@ -274,8 +274,8 @@ records! {
         first: u32,
         /// How many there are.
         count: u32,
-        /// Padding to a multiple of eight bytes.
-        spare: u32,
+        /// 1: rays ask on where something is in the way.
+        insist: u32,
     }
 
     /// `gather_far`: one warp per site.

@@ -1288,7 +1288,7 @@ struct alignas(4) SeenRay {
     Vec3 radiance;
     unsigned node;
     Vec3 kd;
-    unsigned spare;
+    unsigned settled;
 };
 static_assert(sizeof(SeenRay) == 64, "size of SeenRay");
 static_assert(PLACE_OF(SeenRay, position) == 0, "place of SeenRay::position");
@@ -1298,7 +1298,7 @@ static_assert(PLACE_OF(SeenRay, kind) == 28, "place of SeenRay::kind");
 static_assert(PLACE_OF(SeenRay, radiance) == 32, "place of SeenRay::radiance");
 static_assert(PLACE_OF(SeenRay, node) == 44, "place of SeenRay::node");
 static_assert(PLACE_OF(SeenRay, kd) == 48, "place of SeenRay::kd");
-static_assert(PLACE_OF(SeenRay, spare) == 60, "place of SeenRay::spare");
+static_assert(PLACE_OF(SeenRay, settled) == 60, "place of SeenRay::settled");
 
 struct alignas(4) Node {
     Vec3 values[12];
@@ -1418,7 +1418,7 @@ struct alignas(8) Bounce {
     int finer;
     unsigned first;
     unsigned count;
-    unsigned spare;
+    unsigned insist;
 };
 static_assert(sizeof(Bounce) == 1664, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
@@ -1436,7 +1436,7 @@ static_assert(PLACE_OF(Bounce, order) == 1644, "place of Bounce::order");
 static_assert(PLACE_OF(Bounce, finer) == 1648, "place of Bounce::finer");
 static_assert(PLACE_OF(Bounce, first) == 1652, "place of Bounce::first");
 static_assert(PLACE_OF(Bounce, count) == 1656, "place of Bounce::count");
-static_assert(PLACE_OF(Bounce, spare) == 1660, "place of Bounce::spare");
+static_assert(PLACE_OF(Bounce, insist) == 1660, "place of Bounce::insist");
 
 struct alignas(8) GatherFar {
     Fans fans;

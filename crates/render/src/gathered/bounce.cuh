@@ -19,25 +19,32 @@ DEVICE Name name_of_seen(const SeenRay &seen, int finer) {
     return name_of_node(level, cell_at(level, seen.position), seen.kind, (unsigned)finer);
 }
 
+DEVICE bool is_somewhere(const Site &site) { return !(site.normal == splat(0.0f)); }
+
 // Whether a node may answer what is asked in a cell that is smaller by so many levels than the one that was asked at first.
 DEVICE bool may_answer(const Node &node, const Site &site, int finer) {
-    return !(site.normal == splat(0.0f)) && (!node.covered || finer == BOUNCE_FINER);
+    return is_somewhere(site) && (!node.covered || finer == BOUNCE_FINER);
 }
+
+// Whether a ray asks a node, or a smaller one.
+DEVICE bool asks_on(const SeenRay &seen) { return is_open(seen) && !seen.settled; }
 
 // Asks for the node that a ray sees.
 DEVICE void name_node(const Bounce &args, const SeenRay &seen) { add_name(args.names, name_of_seen(seen, args.finer)); }
 
-// Finds the node that a ray sees, or none if something is in the way, or no surface was found.
+// Finds the node that a ray sees, or none if something is in the way, or no surface was found. Only if they insist, rays ask on there.
 template <class Structure>
 DEVICE void hide_nodes(const Bounce &args, const Structure &structure) {
     unsigned ray;
-    if (!fan_ray_of_thread(args.fans, ray) || !is_open(args.fans.seen[ray]))
+    if (!fan_ray_of_thread(args.fans, ray) || !asks_on(args.fans.seen[ray]))
         return;
     SeenRay &seen = args.fans.seen[ray];
     const unsigned node = number_of(args.names, name_of_seen(seen, args.finer).key);
     const Site &site = args.sites[node];
     if (may_answer(args.nodes[node], site, args.finer) && !occluded(structure, args.fans.tally, site_segment(place_of_seen(seen), site)))
         seen.node = node;
+    else if (!args.insist && !(is_somewhere(site) && args.nodes[node].covered))
+        seen.settled = 1;
 }
 
 // Lists a node, once, if less is known of it, or asked for, than is asked now.

@@ -9,7 +9,7 @@
 //!
 //! over the rays j of node k. S_j is what is seen without other reflections. If something is between a hit and the site of its cell, such as a wall
 //! that stands on a floor, or covers the site nearer than the cell is large, such as the other side of a slit, a smaller cell around the hit is asked,
-//! up to twice; at last the mean of what the other hits receive stands for it: so nothing leaks.
+//! up to twice (rays of nodes do so only for what is covered); at last the mean of what the other hits receive stands for it: so nothing leaks.
 //!
 //! A node is linked once, whatever is asked of it. It keeps the light after each number of reflections: so what is known of it depends neither on who
 //! asked for it nor on what was asked before. Twin: `bounce.cuh`.
@@ -87,9 +87,17 @@ impl Node {
         Node::new(site, !is_open, if found.is_some() { 0 } else { ORDERS }, [Vec3::ZERO; ORDERS])
     }
 
+    fn is_somewhere(&self) -> bool {
+        self.site.point.normal != Vec3::ZERO
+    }
+
+    fn is_covered(&self) -> bool {
+        self.is_somewhere() && self.covered
+    }
+
     /// Whether it may answer what is asked in a cell that is smaller by so many levels than the one that was asked at first.
     fn may_answer(&self, finer: i32) -> bool {
-        self.site.point.normal != Vec3::ZERO && (!self.covered || finer == BOUNCE_FINER)
+        self.is_somewhere() && (!self.covered || finer == BOUNCE_FINER)
     }
 }
 
@@ -116,7 +124,7 @@ impl Bounce {
 
     /// Adds to what the rays of fans see what is reflected of light that lights do not give.
     pub(super) fn complete(&mut self, scene: &Scene, seen: &[Seen], fan: Fan) -> Vec<Vec3> {
-        let numbers = self.resolve(scene, seen, |seen| seen.spot.as_ref());
+        let numbers = self.resolve(scene, seen, true);
         self.ensure(scene, &numbers);
         let mut radiance = vec![Vec3::ZERO; seen.len()];
         let fans = seen.par_chunks_exact(fan.len()).zip(numbers.par_chunks_exact(fan.len()));
@@ -134,16 +142,12 @@ impl Bounce {
     }
 
     /// The numbers of the nodes that the spots of rays see; they are added where they are new. `None` without a spot, and where something is in the
-    /// way to all that are asked.
-    fn resolve<T: Sync>(
-        &mut self,
-        scene: &Scene,
-        rays: &[T],
-        spot: impl Fn(&T) -> Option<&Spot> + Sync,
-    ) -> Vec<Option<u32>> {
+    /// way to all that are asked. Only if they `insist`, rays ask on where something is in the way: from reflection to reflection that would take too
+    /// long among leaves.
+    fn resolve(&mut self, scene: &Scene, rays: &[Seen], insist: bool) -> Vec<Option<u32>> {
         let mut numbers = vec![None; rays.len()];
         let spots = rays.par_iter().enumerate();
-        let mut asking: Vec<(u32, Spot)> = spots.filter_map(|(ray, seen)| Some((ray as u32, *spot(seen)?))).collect();
+        let mut asking: Vec<(u32, Spot)> = spots.filter_map(|(ray, seen)| Some((ray as u32, seen.spot?))).collect();
         while !asking.is_empty() {
             self.admit(scene, &asking);
             let found: Vec<Option<u32>> =
@@ -151,7 +155,10 @@ impl Bounce {
             for (&(ray, _), number) in asking.iter().zip(&found) {
                 numbers[ray as usize] = *number;
             }
-            let again = asking.into_par_iter().zip(found).filter(|(_, number)| number.is_none());
+            let is_covered = |spot: &Spot| self.nodes[self.numbers[&spot.name()] as usize].is_covered();
+            let asks_on =
+                |((_, spot), number): &((u32, Spot), Option<u32>)| number.is_none() && (insist || is_covered(spot));
+            let again = asking.into_par_iter().zip(found).filter(asks_on);
             asking = again.filter_map(|((ray, spot), _)| Some((ray, spot.finer()?))).collect();
         }
         numbers
@@ -244,7 +251,7 @@ impl Bounce {
             let of = |&node: &u32| (&self.nodes[node as usize].site, f32::INFINITY);
             let cast = scene.cast(new.iter().map(of), FAN);
             let seen = scene.seen(&cast);
-            let numbers = self.resolve(scene, &seen, |seen| seen.spot.as_ref());
+            let numbers = self.resolve(scene, &seen, false);
             let fans = seen.par_chunks_exact(FAN.len()).zip(numbers.par_chunks_exact(FAN.len()));
             let links = fans.zip(cast.weights.par_chunks_exact(FAN.len()));
             let links: Vec<(Vec3, Links)> =

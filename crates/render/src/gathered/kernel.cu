@@ -88,7 +88,7 @@ KERNEL(level_fans, Fans, BLOCK, 4) {
 
 KERNEL(name_nodes, Bounce, BLOCK, 4) {
     unsigned ray;
-    if (fan_ray_of_thread(args.fans, ray) && is_open(args.fans.seen[ray]))
+    if (fan_ray_of_thread(args.fans, ray) && asks_on(args.fans.seen[ray]))
         name_node(args, args.fans.seen[ray]);
 }
 

@@ -88,7 +88,6 @@ fn a_lamp_near_a_floor_lights_it_as_its_integral_says() {
             for mode in [Mode::RayTrace, Mode::Area, Mode::LightMesh] {
                 let frame = render(&scene, &settings(mode));
                 let worst = worst(&frame, |point| panel.shown(point, DVec3::Y, |_| true));
-                println!("{height} {front:?} {mode:?}: {worst}");
                 assert!(worst < 0.02, "{height}, {front:?}, {mode:?}: {worst}");
             }
         }
@@ -121,7 +120,6 @@ fn a_strip_lights_a_wall_beside_it_evenly() {
                     (least, most) = (least.min(frame.image.color()[pixel][0]), most.max(frame.image.color()[pixel][0]));
                 }
             }
-            println!("{away} {front:?}: {least} to {most}, off {off}");
             assert!(most / least <= 1.03 && most > 0.0, "{away}, {front:?}: {least} to {most}");
             assert!(off < 0.03, "{away}, {front:?}: {off}");
         }
@@ -144,7 +142,6 @@ fn a_shadow_near_a_lamp_is_the_share_of_its_light() {
         let [area, lists] = [Mode::Area, Mode::LightMesh].map(|mode| render(&scene, &settings(mode)));
         assert_eq!(area.image.color(), lists.image.color());
         let worst = worst(&lists, |point| panel.shown(point, DVec3::Y, |place| seen(point, place)));
-        println!("{front:?}: {worst}");
         assert!(worst < 0.03, "{front:?}: {worst}");
         // Several sets of samples.
         let [area, lists] =
@@ -181,7 +178,6 @@ fn a_wall_hides_its_share_of_a_wide_sun() {
         let scene = lit(draft.orthographic([-0.05, 1.0, 0.001], [-0.05, 0.0, 0.0], 0.05), sun);
         let frame = render(&scene, &settings(Mode::LightMesh));
         let mean = frame.image.color().iter().map(|color| color[0]).sum::<f32>() / frame.image.color().len() as f32;
-        println!("{degrees}: {mean}");
         assert!((mean - 0.5).abs() < 0.02, "{degrees}: {mean}");
     }
 }

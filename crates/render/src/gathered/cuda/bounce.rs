@@ -74,16 +74,16 @@ impl<R: Runtime> DeviceBounce<R> {
 
     /// Adds to what rays see what is reflected of light that lights do not give.
     pub(super) fn complete(&mut self, device: &Device<R>, fans: &DeviceFans<R>) -> Result<(), RenderError> {
-        self.resolve(device, fans)?;
+        self.resolve(device, fans, true)?;
         self.ensure(device, fans)?;
         device.warps("reflect", fans.sites, &self.record(fans))
     }
 
-    /// Finds the nodes that rays see; they are added where they are new.
-    fn resolve(&mut self, device: &Device<R>, fans: &DeviceFans<R>) -> Result<(), RenderError> {
+    /// Finds the nodes that rays see; they are added where they are new. Only if they `insist`, rays ask on where something is in the way.
+    fn resolve(&mut self, device: &Device<R>, fans: &DeviceFans<R>, insist: bool) -> Result<(), RenderError> {
         for finer in 0..=BOUNCE_FINER {
             self.admit(device, fans, finer)?;
-            device.tracing(HIDE_NODES, fans.rays, &Bounce { finer, ..self.record(fans) })?;
+            device.tracing(HIDE_NODES, fans.rays, &Bounce { finer, insist: insist.into(), ..self.record(fans) })?;
         }
         Ok(())
     }
@@ -147,7 +147,7 @@ impl<R: Runtime> DeviceBounce<R> {
             let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
             let own = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, FAN)?;
             own.see(device)?;
-            self.resolve(device, &own)?;
+            self.resolve(device, &own, false)?;
             let record = Bounce { first: first as u32, linked: (self.linked + first) as u32, ..self.record(&own) };
             device.threads("link_nodes", count, &record)?;
         }

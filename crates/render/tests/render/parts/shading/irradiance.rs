@@ -74,7 +74,6 @@ fn rectangles_give_what_their_points_give() {
             mean_of(middles().map(|(x, y)| way + (2.0 * x - 1.0) * u + (2.0 * y - 1.0) * v), front, normal)
         };
         let worst = worst(&light, sum);
-        println!("rectangle {front:?}: {worst}");
         assert!(worst < 2e-3, "{front:?}: {worst}");
     }
 }
@@ -95,7 +94,6 @@ fn discs_give_what_their_points_give() {
             mean_of(middles().map(place), front, normal)
         };
         let worst = worst(&light, sum);
-        println!("disc {front:?}: {worst}");
         assert!(worst < 5e-3, "{front:?}: {worst}");
     }
 }
@@ -122,7 +120,6 @@ fn balls_shine_evenly_from_their_surfaces() {
         sum_of_cap(way.normalize(), cosine, normal) / (PI * PI * square)
     };
     let worst = worst(&light, sum);
-    println!("ball: {worst}");
     assert!(worst < 1e-3, "{worst}");
     // From inside, from all sides.
     let inside = irradiance(&light, Vec3::Y * 0.5 * radius, Vec3::Y) * (std::f32::consts::PI * radius).powi(2);
