@@ -127,7 +127,8 @@ def test_metallic_and_roughness_images() -> None:
     add_image(material, image("metallic", np.repeat(metallic[..., None], 3, 2), space="Non-Color"), "Metallic")
     add_image(material, image("rough", np.repeat(rough[..., None], 3, 2), space="Non-Color"), "Roughness")
     shown(material)
-    agreement("metallic_roughness", lightmesh(), cycles()).check(difference=0.06)
+    # Highlights of a lamp are those of 16 of its points.
+    agreement("metallic_roughness", lightmesh(), cycles()).check(ratio=0.03, difference=0.06)
 
 
 def test_cut_out() -> None:
