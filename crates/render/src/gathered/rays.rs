@@ -79,30 +79,30 @@ pub(super) struct Cast {
     pub(super) weights: Vec<f32>,
     pub(super) hits: Vec<Hit>,
     fan: Fan,
-    /// Level and seed of each site.
-    origins: Vec<(i32, u64)>,
+    /// The seed of each site.
+    seeds: Vec<u64>,
+    /// By site: the level of the smallest cells that its rays ask.
+    levels: Vec<i32>,
+}
+
+/// The level of the smallest cells that the rays of a site ask for reflected light: cells become larger from reflection to reflection, up to
+/// what suits a ray of mean length, so that neither corners are asked in detail everywhere nor whole rooms as one.
+fn asked_level(own: i32, reach: f32, hits: &[Hit]) -> i32 {
+    let hits = hits.iter().filter(|hit| hit.is_some());
+    let (sum, count) = hits.fold((0.0, 0.0), |(sum, count), hit| (sum + hit.t, count + 1.0));
+    let is_near = reach < f32::INFINITY;
+    if is_near || count == 0.0 { own } else { own.max((own + 1).min(level_of(BOUNCE_SIZE * (sum / count)).0)) }
 }
 
 impl Cast {
-    /// The level of the smallest cells that the rays of each site ask for reflected light: cells become larger from reflection to reflection, up to
-    /// what suits a ray of mean length, so that neither corners are asked in detail everywhere nor whole rooms as one.
-    fn asked_levels(&self) -> Vec<i32> {
-        let level = |(fan, hits): (usize, &[Hit])| {
-            let (own, _) = self.origins[fan];
-            let (sum, count) = hits
-                .iter()
-                .filter(|hit| hit.is_some())
-                .fold((0.0, 0.0), |(sum, count), hit| (sum + hit.t, count + 1.0));
-            let is_near = self.list.rays[fan * self.fan.len()].t_max < f32::INFINITY;
-            if is_near || count == 0.0 { own } else { own.max((own + 1).min(level_of(BOUNCE_SIZE * (sum / count)).0)) }
-        };
-        self.hits.par_chunks_exact(self.fan.len()).enumerate().map(level).collect()
+    /// The level of the smallest cells that a ray asks for reflected light.
+    fn level(&self, ray: usize) -> i32 {
+        self.levels[ray / self.fan.len()]
     }
 
     /// What distinguishes a ray's random numbers.
     fn seed(&self, ray: usize) -> u64 {
-        let (_, seed) = self.origins[ray / self.fan.len()];
-        seed.wrapping_add((self.fan.len() + ray % self.fan.len()) as u64)
+        self.seeds[ray / self.fan.len()].wrapping_add((self.fan.len() + ray % self.fan.len()) as u64)
     }
 }
 
@@ -135,8 +135,10 @@ impl Scene<'_> {
         });
         let hits = closest_hits(self.scene, &list, |_, trace| self.job.piece(0, trace));
         Tally::add(&self.job.tally.gather_rays, count as u64);
-        let origins = sites.iter().map(|(site, _)| (site.level, site.seed)).collect();
-        Cast { list, weights, hits, fan, origins }
+        let seeds = sites.iter().map(|(site, _)| site.seed).collect();
+        let level = |(hits, &(site, reach)): (&[Hit], &(&Site, f32))| asked_level(site.level, reach, hits);
+        let levels = hits.par_chunks_exact(fan.len()).zip(&sites).map(level).collect();
+        Cast { list, weights, hits, fan, seeds, levels }
     }
 
     /// What rays see, but for the light that reaches what they hit from no light directly. Rays that end before they hit anything see nothing.
@@ -144,18 +146,13 @@ impl Scene<'_> {
         let Scene { job, scene, .. } = *self;
         let wave = HostWave { job, scene, rays: &cast.list, hits: &cast.hits, lights: LightGroup::ALL, parts: 1 };
         let lights = Lights::new(&wave);
-        let levels = cast.asked_levels();
         let mut seen = vec![Seen::default(); cast.hits.len()];
         let size = batch(seen.len());
         seen.par_chunks_mut(size).enumerate().for_each(|(batch, seen)| {
             job.piece(0, || {
                 let mut segments = Segments::default();
                 for (place, seen) in seen.iter_mut().enumerate() {
-                    let ray = batch * size + place;
-                    *seen = seen_by(&wave, cast, &lights, [ray, place], &mut segments);
-                    if let Some(spot) = &mut seen.spot {
-                        spot.place.level = spot.place.level.max(levels[ray / cast.fan.len()]);
-                    }
+                    *seen = seen_by(&wave, cast, &lights, [batch * size + place, place], &mut segments);
                 }
                 segments.add(&wave, seen);
             });
@@ -207,7 +204,7 @@ fn seen_by(wave: &HostWave, cast: &Cast, lights: &Lights, [ray, place]: [usize; 
     segments.note(wave, lights, cast.seed(ray), place, &surface);
     let point = &surface.point;
     let is_front = outward(&wave.scene.geometry.triangles.at(hit.triangle)).dot(direction) < 0.0;
-    let level = level_of(BOUNCE_SIZE * hit.t).0;
+    let level = level_of(BOUNCE_SIZE * hit.t).0.max(cast.level(ray));
     let spot = Spot { place: Place::new(point, level), finer: 0, kind: kind_of(point.normal, is_front) };
     Seen { radiance, kd, spot: Some(spot) }
 }

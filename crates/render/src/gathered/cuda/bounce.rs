@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bytemuck::Zeroable;
 use lightmesh_layout::constants::BOUNCE_FINER;
-use lightmesh_layout::gathered::{Bounce, Names, Node, NodeLink, Site, TakeSites};
+use lightmesh_layout::gathered::{Bounce, Node, NodeLink, Site, TakeSites};
 
 use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Sites, taken};
@@ -52,14 +52,10 @@ impl<R: Runtime> DeviceBounce<R> {
     }
 
     fn record(&self, fans: &DeviceFans<R>) -> Bounce {
-        self.with_names(fans, self.names.record())
-    }
-
-    fn with_names(&self, fans: &DeviceFans<R>, names: Names) -> Bounce {
         Bounce {
             scene: fans.record.scene,
             fans: fans.record,
-            names,
+            names: self.names.record(),
             nodes: self.nodes.output(),
             sites: self.sites.output(),
             links: self.links.output(),
