@@ -15,8 +15,9 @@ use serde::Serialize;
 use crate::color;
 use crate::destination::is_standard;
 
-/// How long the last line may wait for someone to read standard error.
-const PATIENCE: Duration = Duration::from_millis(50);
+/// How long the last line may wait for someone to read standard error. On a busy machine, a thread alone may wait for tenths of a second
+/// until it runs.
+const PATIENCE: Duration = Duration::from_secs(1);
 /// Removes a progress bar from the current line of a terminal.
 const CLEAR_LINE: &str = "\r\x1b[2K";
 
