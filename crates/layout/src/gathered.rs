@@ -205,7 +205,7 @@ records! {
         first: u32,
     }
 
-    /// `cast_fans`: one warp per site; `trace_fans` and `see`: one thread per ray; `level_fans`: one thread per site.
+    /// `cast_fans`: one warp per site; `trace_fans` and `see`: one thread per ray; `level_fans` and `brighten_fans`: one thread per site.
     Fans {
         /// The scene.
         scene: Scene,
@@ -227,6 +227,8 @@ records! {
         seen: Out<SeenRay>,
         /// The level of the smallest cells that the rays of each site ask.
         levels: Out<i32>,
+        /// The mean luminance that the rays of each site see: `brighten_fans`.
+        brightness: Out<f32>,
         /// Number of sites.
         count: u32,
         /// The side of the square that the rays of a site form.
@@ -274,7 +276,7 @@ records! {
         first: u32,
         /// How many there are.
         count: u32,
-        /// 1: rays ask on where something is in the way.
+        /// 1: all rays ask on where something is in the way; 0: those that see more than the mean.
         insist: u32,
     }
 

@@ -387,6 +387,8 @@
 #define BOUNCE_FINER 2
 // The rays of a site that other rays hit form a square with this side.
 #define BOUNCE_SIDE 8u
+// Where there are more lights, what a ray hits asks about so many of them, chosen by what they may give.
+#define CHOSEN_LIGHTS 4u
 // How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's. After so many, a share of
 // the twelfth power of what surfaces reflect is missing: 2 % in a closed room that reflects 0.7.
 #define ORDERS 12u
@@ -1377,6 +1379,7 @@ struct alignas(8) Fans {
     Hit *hits;
     SeenRay *seen;
     int *levels;
+    float *brightness;
     unsigned count;
     unsigned side;
     float reach;
@@ -1384,7 +1387,7 @@ struct alignas(8) Fans {
     unsigned lamps;
     unsigned spare;
 };
-static_assert(sizeof(Fans) == 880, "size of Fans");
+static_assert(sizeof(Fans) == 888, "size of Fans");
 static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
 static_assert(PLACE_OF(Fans, rays) == 664, "place of Fans::rays");
 static_assert(PLACE_OF(Fans, sampling) == 784, "place of Fans::sampling");
@@ -1395,12 +1398,13 @@ static_assert(PLACE_OF(Fans, weights) == 824, "place of Fans::weights");
 static_assert(PLACE_OF(Fans, hits) == 832, "place of Fans::hits");
 static_assert(PLACE_OF(Fans, seen) == 840, "place of Fans::seen");
 static_assert(PLACE_OF(Fans, levels) == 848, "place of Fans::levels");
-static_assert(PLACE_OF(Fans, count) == 856, "place of Fans::count");
-static_assert(PLACE_OF(Fans, side) == 860, "place of Fans::side");
-static_assert(PLACE_OF(Fans, reach) == 864, "place of Fans::reach");
-static_assert(PLACE_OF(Fans, is_near) == 868, "place of Fans::is_near");
-static_assert(PLACE_OF(Fans, lamps) == 872, "place of Fans::lamps");
-static_assert(PLACE_OF(Fans, spare) == 876, "place of Fans::spare");
+static_assert(PLACE_OF(Fans, brightness) == 856, "place of Fans::brightness");
+static_assert(PLACE_OF(Fans, count) == 864, "place of Fans::count");
+static_assert(PLACE_OF(Fans, side) == 868, "place of Fans::side");
+static_assert(PLACE_OF(Fans, reach) == 872, "place of Fans::reach");
+static_assert(PLACE_OF(Fans, is_near) == 876, "place of Fans::is_near");
+static_assert(PLACE_OF(Fans, lamps) == 880, "place of Fans::lamps");
+static_assert(PLACE_OF(Fans, spare) == 884, "place of Fans::spare");
 
 struct alignas(8) Bounce {
     Scene scene;
@@ -1420,23 +1424,23 @@ struct alignas(8) Bounce {
     unsigned count;
     unsigned insist;
 };
-static_assert(sizeof(Bounce) == 1664, "size of Bounce");
+static_assert(sizeof(Bounce) == 1672, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
 static_assert(PLACE_OF(Bounce, fans) == 664, "place of Bounce::fans");
-static_assert(PLACE_OF(Bounce, names) == 1544, "place of Bounce::names");
-static_assert(PLACE_OF(Bounce, nodes) == 1584, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, sites) == 1592, "place of Bounce::sites");
-static_assert(PLACE_OF(Bounce, links) == 1600, "place of Bounce::links");
-static_assert(PLACE_OF(Bounce, listed) == 1608, "place of Bounce::listed");
-static_assert(PLACE_OF(Bounce, listed_count) == 1616, "place of Bounce::listed_count");
-static_assert(PLACE_OF(Bounce, unlinked) == 1624, "place of Bounce::unlinked");
-static_assert(PLACE_OF(Bounce, unlinked_count) == 1632, "place of Bounce::unlinked_count");
-static_assert(PLACE_OF(Bounce, linked) == 1640, "place of Bounce::linked");
-static_assert(PLACE_OF(Bounce, order) == 1644, "place of Bounce::order");
-static_assert(PLACE_OF(Bounce, finer) == 1648, "place of Bounce::finer");
-static_assert(PLACE_OF(Bounce, first) == 1652, "place of Bounce::first");
-static_assert(PLACE_OF(Bounce, count) == 1656, "place of Bounce::count");
-static_assert(PLACE_OF(Bounce, insist) == 1660, "place of Bounce::insist");
+static_assert(PLACE_OF(Bounce, names) == 1552, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1592, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, sites) == 1600, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, links) == 1608, "place of Bounce::links");
+static_assert(PLACE_OF(Bounce, listed) == 1616, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1624, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, unlinked) == 1632, "place of Bounce::unlinked");
+static_assert(PLACE_OF(Bounce, unlinked_count) == 1640, "place of Bounce::unlinked_count");
+static_assert(PLACE_OF(Bounce, linked) == 1648, "place of Bounce::linked");
+static_assert(PLACE_OF(Bounce, order) == 1652, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, finer) == 1656, "place of Bounce::finer");
+static_assert(PLACE_OF(Bounce, first) == 1660, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1664, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, insist) == 1668, "place of Bounce::insist");
 
 struct alignas(8) GatherFar {
     Fans fans;
@@ -1447,14 +1451,14 @@ struct alignas(8) GatherFar {
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherFar) == 920, "size of GatherFar");
+static_assert(sizeof(GatherFar) == 928, "size of GatherFar");
 static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
-static_assert(PLACE_OF(GatherFar, far) == 880, "place of GatherFar::far");
-static_assert(PLACE_OF(GatherFar, owners) == 888, "place of GatherFar::owners");
-static_assert(PLACE_OF(GatherFar, uneven) == 896, "place of GatherFar::uneven");
-static_assert(PLACE_OF(GatherFar, uneven_count) == 904, "place of GatherFar::uneven_count");
-static_assert(PLACE_OF(GatherFar, first) == 912, "place of GatherFar::first");
-static_assert(PLACE_OF(GatherFar, before) == 916, "place of GatherFar::before");
+static_assert(PLACE_OF(GatherFar, far) == 888, "place of GatherFar::far");
+static_assert(PLACE_OF(GatherFar, owners) == 896, "place of GatherFar::owners");
+static_assert(PLACE_OF(GatherFar, uneven) == 904, "place of GatherFar::uneven");
+static_assert(PLACE_OF(GatherFar, uneven_count) == 912, "place of GatherFar::uneven_count");
+static_assert(PLACE_OF(GatherFar, first) == 920, "place of GatherFar::first");
+static_assert(PLACE_OF(GatherFar, before) == 924, "place of GatherFar::before");
 
 struct alignas(8) GatherFine {
     Fans fans;
@@ -1468,17 +1472,17 @@ struct alignas(8) GatherFine {
     unsigned count;
     unsigned spare;
 };
-static_assert(sizeof(GatherFine) == 1720, "size of GatherFine");
+static_assert(sizeof(GatherFine) == 1728, "size of GatherFine");
 static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
-static_assert(PLACE_OF(GatherFine, lookup) == 880, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, far) == 1672, "place of GatherFine::far");
-static_assert(PLACE_OF(GatherFine, fine) == 1680, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, alone) == 1688, "place of GatherFine::alone");
-static_assert(PLACE_OF(GatherFine, alone_count) == 1696, "place of GatherFine::alone_count");
-static_assert(PLACE_OF(GatherFine, first) == 1704, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_alone) == 1708, "place of GatherFine::first_alone");
-static_assert(PLACE_OF(GatherFine, count) == 1712, "place of GatherFine::count");
-static_assert(PLACE_OF(GatherFine, spare) == 1716, "place of GatherFine::spare");
+static_assert(PLACE_OF(GatherFine, lookup) == 888, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, far) == 1680, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, fine) == 1688, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, alone) == 1696, "place of GatherFine::alone");
+static_assert(PLACE_OF(GatherFine, alone_count) == 1704, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, first) == 1712, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_alone) == 1716, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, count) == 1720, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1724, "place of GatherFine::spare");
 
 struct alignas(8) GatherPoints {
     Scene scene;

@@ -32,7 +32,20 @@ DEVICE bool asks_on(const SeenRay &seen) { return is_open(seen) && !seen.settled
 // Asks for the node that a ray sees.
 DEVICE void name_node(const Bounce &args, const SeenRay &seen) { add_name(args.names, name_of_seen(seen, args.finer)); }
 
-// Finds the node that a ray sees, or none if something is in the way, or no surface was found. Only if they insist, rays ask on there.
+// The mean luminance that the rays of a node see.
+DEVICE float brightness(const Fans &fans, unsigned site) {
+    float sum = 0.0f;
+    for (unsigned ray = site * rays_of_fan(fans); ray < (site + 1) * rays_of_fan(fans); ++ray)
+        sum += fans.weights[ray] * luminance(fans.seen[ray].radiance);
+    return sum;
+}
+
+// Whether a ray asks on where something is in the way. Where others see little, what is lit matters: most of what is reflected comes from there.
+DEVICE bool insists(const Bounce &args, unsigned ray) {
+    return args.insist || luminance(args.fans.seen[ray].radiance) > args.fans.brightness[ray / rays_of_fan(args.fans)];
+}
+
+// Finds the node that a ray sees, or none if something is in the way, or no surface was found. Only rays that insist ask on there.
 template <class Structure>
 DEVICE void hide_nodes(const Bounce &args, const Structure &structure) {
     unsigned ray;
@@ -43,7 +56,7 @@ DEVICE void hide_nodes(const Bounce &args, const Structure &structure) {
     const Site &site = args.sites[node];
     if (may_answer(args.nodes[node], site, args.finer) && !occluded(structure, args.fans.tally, site_segment(place_of_seen(seen), site)))
         seen.node = node;
-    else if (!args.insist && !(is_somewhere(site) && args.nodes[node].covered))
+    else if (!insists(args, ray) && !(is_somewhere(site) && args.nodes[node].covered))
         seen.settled = 1;
 }
 

@@ -9,7 +9,7 @@
 //!
 //! over the rays j of node k. S_j is what is seen without other reflections. If something is between a hit and the site of its cell, such as a wall
 //! that stands on a floor, or covers the site nearer than the cell is large, such as the other side of a slit, a smaller cell around the hit is asked,
-//! up to twice (rays of nodes do so only for what is covered); at last the mean of what the other hits receive stands for it: so nothing leaks.
+//! up to twice (rays of nodes do so only for what is covered, or brighter than the mean of what they see); at last the mean of what the other hits receive stands for it: so nothing leaks.
 //!
 //! A node is linked once, whatever is asked of it. It keeps the light after each number of reflections: so what is known of it depends neither on who
 //! asked for it nor on what was asked before. Twin: `bounce.cuh`.
@@ -24,6 +24,7 @@ use rayon::prelude::*;
 use super::cells::{Asked, CellHasher, KIND_BITS, NAME_BITS, Site, nearest_of_kind};
 use super::rays::{Fan, Seen, Spot};
 use super::scene::Scene;
+use crate::shading::luminance;
 use crate::stages::primary_rays::cpu::batch;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
@@ -124,7 +125,7 @@ impl Bounce {
 
     /// Adds to what the rays of fans see what is reflected of light that lights do not give.
     pub(super) fn complete(&mut self, scene: &Scene, seen: &[Seen], fan: Fan) -> Vec<Vec3> {
-        let numbers = self.resolve(scene, seen, true);
+        let numbers = self.resolve(scene, seen, |_| true);
         self.ensure(scene, &numbers);
         let mut radiance = vec![Vec3::ZERO; seen.len()];
         let fans = seen.par_chunks_exact(fan.len()).zip(numbers.par_chunks_exact(fan.len()));
@@ -142,9 +143,9 @@ impl Bounce {
     }
 
     /// The numbers of the nodes that the spots of rays see; they are added where they are new. `None` without a spot, and where something is in the
-    /// way to all that are asked. Only if they `insist`, rays ask on where something is in the way: from reflection to reflection that would take too
-    /// long among leaves.
-    fn resolve(&mut self, scene: &Scene, rays: &[Seen], insist: bool) -> Vec<Option<u32>> {
+    /// way to all that are asked. Only rays that `insist` ask on where something is in the way: from reflection to reflection that would take too long
+    /// among leaves.
+    fn resolve(&mut self, scene: &Scene, rays: &[Seen], insist: impl Fn(u32) -> bool + Sync) -> Vec<Option<u32>> {
         let mut numbers = vec![None; rays.len()];
         let spots = rays.par_iter().enumerate();
         let mut asking: Vec<(u32, Spot)> = spots.filter_map(|(ray, seen)| Some((ray as u32, seen.spot?))).collect();
@@ -156,8 +157,9 @@ impl Bounce {
                 numbers[ray as usize] = *number;
             }
             let is_covered = |spot: &Spot| self.nodes[self.numbers[&spot.name()] as usize].is_covered();
-            let asks_on =
-                |((_, spot), number): &((u32, Spot), Option<u32>)| number.is_none() && (insist || is_covered(spot));
+            let asks_on = |((ray, spot), number): &((u32, Spot), Option<u32>)| {
+                number.is_none() && (insist(*ray) || is_covered(spot))
+            };
             let again = asking.into_par_iter().zip(found).filter(asks_on);
             asking = again.filter_map(|((ray, spot), _)| Some((ray, spot.finer()?))).collect();
         }
@@ -251,7 +253,14 @@ impl Bounce {
             let of = |&node: &u32| (&self.nodes[node as usize].site, f32::INFINITY);
             let cast = scene.cast(new.iter().map(of), FAN);
             let seen = scene.seen(&cast);
-            let numbers = self.resolve(scene, &seen, false);
+            let brightness: Vec<f32> = seen
+                .par_chunks_exact(FAN.len())
+                .zip(cast.weights.par_chunks_exact(FAN.len()))
+                .map(brightness)
+                .collect();
+            // Where others see little, what is lit matters: most of what is reflected comes from there.
+            let is_bright = |ray: u32| luminance(seen[ray as usize].radiance) > brightness[ray as usize / FAN.len()];
+            let numbers = self.resolve(scene, &seen, is_bright);
             let fans = seen.par_chunks_exact(FAN.len()).zip(numbers.par_chunks_exact(FAN.len()));
             let links = fans.zip(cast.weights.par_chunks_exact(FAN.len()));
             let links: Vec<(Vec3, Links)> =
@@ -272,6 +281,11 @@ impl Bounce {
         let lit: Vec3 = seen.iter().map(|&(number, weight)| weight * value(number)).sum();
         first + lit + *hidden * mean(seen.iter().map(|&(number, _)| value(number)))
     }
+}
+
+/// The mean luminance that the rays of a node see.
+fn brightness((seen, weights): (&[Seen], &[f32])) -> f32 {
+    seen.iter().zip(weights).fold(0.0, |sum, (seen, weight)| sum + weight * luminance(seen.radiance))
 }
 
 /// What arrives at a node with the last reflection alone, and what its rays see.

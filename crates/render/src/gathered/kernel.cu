@@ -86,6 +86,12 @@ KERNEL(level_fans, Fans, BLOCK, 4) {
 
 // ---- bounce.cuh ----
 
+KERNEL(brighten_fans, Fans, BLOCK, 4) {
+    unsigned site;
+    if (thread_has_work(args.count, site))
+        args.brightness[site] = brightness(args, site);
+}
+
 KERNEL(name_nodes, Bounce, BLOCK, 4) {
     unsigned ray;
     if (fan_ray_of_thread(args.fans, ray) && asks_on(args.fans.seen[ray]))

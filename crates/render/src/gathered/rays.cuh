@@ -78,16 +78,69 @@ DEVICE int asked_level(const Fans &fans, unsigned site) {
     return fans.is_near || count == 0.0f ? own : max(own, min(own + 1, level_of_width(BOUNCE_SIZE * (sum / count), rest)));
 }
 
-// Adds what reaches a point from lights, as a random point of each is seen or not. Returns the number of rays that were cast.
+// About how strongly a light may shine on a surface point, whose reach is given: 0 only if no part of it does.
+DEVICE float strength_expected(const Light &light, const SurfacePoint &point, float reach) {
+    const Vec3 way = light_center(light, point.origin, reach) - point.origin;
+    const float distance = length(way);
+    const float size = light.kind == Light::DIRECTIONAL ? distance * light.size : light.kind == Light::POINT ? light.radius : light.size;
+    const float far = larger(distance, size);
+    const float received = fminf((dot(point.normal, way) + size) / far, 1.0f);
+    const float front = light.surface ? -dot(light.direction, way) : far;
+    if (received <= 0.0f || front <= 0.0f)
+        return 0.0f;
+    const float intensity = larger(larger(light.intensity.x, light.intensity.y), light.intensity.z);
+    return falloff(light, far) * intensity * received * fminf((front + size) / far, 1.0f);
+}
+
+// Which lights a point asks about, of many: one after the other, each with a chance by what it may give. A light that is chosen stands for those that
+// are not.
+struct Choice {
+    // How many lights one of strength 1 counts as; 0: all are chosen.
+    float scale;
+    // How many the lights so far count as. Wherever that passes a whole number, a light is chosen.
+    float sum;
+};
+
+DEVICE Choice choice_of(const Fans &fans, const SurfacePoint &point, float reach, unsigned long long key) {
+    Choice choice = {0.0f, 0.0f};
+    if (fans.scene.light_count > CHOSEN_LIGHTS) {
+        float total = 0.0f;
+        for (unsigned light = 0; light < fans.scene.light_count; ++light)
+            total += strength_expected(fans.scene.lights[light], point, reach);
+        if (total > 0.0f && total < INFINITE) {
+            const unsigned long long random = random_bits(fans.sampling.seed, key, fans.scene.light_count);
+            choice = Choice{(float)CHOSEN_LIGHTS / total, (float)(random >> 40) * LAST_DIGIT};
+        }
+    }
+    return choice;
+}
+
+// The chance that the next light had if it is chosen; 0 if it is not.
+DEVICE float chance_of(Choice &choice, const Light &light, const SurfacePoint &point, float reach) {
+    if (choice.scale == 0.0f)
+        return 1.0f;
+    const float chance = strength_expected(light, point, reach) * choice.scale;
+    const float before = choice.sum;
+    choice.sum += chance;
+    if (chance >= 1.0f)
+        return 1.0f;
+    return floorf(choice.sum) > floorf(before) ? chance : 0.0f;
+}
+
+// Adds what reaches a point from lights that are chosen, as a random point of each is seen or not. Returns the number of rays that were cast.
 template <class Structure>
 DEVICE unsigned add_lights(const Fans &fans, const Structure &structure, const Surface &surface, unsigned long long key, Vec3 &radiance) {
     const float reach = scene_reach(fans.scene, surface.point.origin);
+    Choice choice = choice_of(fans, surface.point, reach, key);
     unsigned cast = 0;
     for (unsigned light = 0; light < fans.scene.light_count; ++light) {
+        const float chance = chance_of(choice, fans.scene.lights[light], surface.point, reach);
+        if (chance == 0.0f)
+            continue;
         const Vec3 to = target(targets_of(fans.scene, fans.sampling, light, surface.point.origin, key), 0);
         if (dot(surface.point.normal, to - surface.point.origin) <= 0.0f)
             continue;
-        const Vec3 gain = surface.material->all * arriving(surface, fans.scene, light, reach, to);
+        const Vec3 gain = surface.material->all * (arriving(surface, fans.scene, light, reach, to) / chance);
         if (gain == splat(0.0f))
             continue;
         ++cast;

@@ -3,7 +3,8 @@
 use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
-use lightmesh_layout::constants::{BOUNCE_SIZE, SKY_CONE};
+use lightmesh_layout::constants::{BOUNCE_SIZE, CHOSEN_LIGHTS, LAST_DIGIT, SKY_CONE};
+use lightmesh_scene::{Light, LightKind};
 use rayon::prelude::*;
 
 use super::cells::{Kind, Site, kind_of, level_of, outward};
@@ -17,12 +18,12 @@ use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
 use crate::job::Sampling;
-use crate::sampling::random_bits;
+use crate::sampling::{light_center, random_bits};
 use crate::shading::environment::surroundings;
-use crate::shading::{LightTargets, Surface, material_of};
-use crate::shadow::{Aim, Targets, hidden};
+use crate::shading::{LightTargets, Surface, falloff, material_of};
+use crate::shadow::{Aim, Targets, hidden, size};
 use crate::stages::primary_rays::cpu::{batch, closest_hits};
-use crate::surface::long_segment;
+use crate::surface::{SurfacePoint, long_segment};
 
 /// The rays of one site: `side`² directions, one in each part of the hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,6 +226,64 @@ impl Lights {
     }
 }
 
+/// Which lights a point asks about, of many: one after the other, each with a chance by what it may give. A light that is chosen stands for those
+/// that are not.
+struct Choice {
+    /// How many lights one of strength 1 counts as; 0: all are chosen.
+    scale: f32,
+    /// How many the lights so far count as. Wherever that passes a whole number, a light is chosen.
+    sum: f32,
+}
+
+impl Choice {
+    fn new(wave: &HostWave, from: (&SurfacePoint, f32), seed: u64) -> Choice {
+        let lights = wave.lights();
+        let mut choice = Choice { scale: 0.0, sum: 0.0 };
+        if lights.len() > CHOSEN_LIGHTS as usize {
+            let total = lights.iter().fold(0.0, |total, light| total + strength_expected(light, from));
+            if total > 0.0 && total < f32::INFINITY {
+                let random = random_bits(wave.job.sampling.seed, seed, lights.len());
+                choice = Choice { scale: CHOSEN_LIGHTS as f32 / total, sum: (random >> 40) as f32 * LAST_DIGIT };
+            }
+        }
+        choice
+    }
+
+    /// The chance that the next light had if it is chosen; 0 if it is not.
+    fn chance(&mut self, light: &Light, from: (&SurfacePoint, f32)) -> f32 {
+        if self.scale == 0.0 {
+            return 1.0;
+        }
+        let chance = strength_expected(light, from) * self.scale;
+        let before = self.sum;
+        self.sum += chance;
+        if chance >= 1.0 {
+            1.0
+        } else if self.sum.floor() > before.floor() {
+            chance
+        } else {
+            0.0
+        }
+    }
+}
+
+/// About how strongly a light may shine on a surface point, whose reach is given: 0 only if no part of it does.
+fn strength_expected(light: &Light, (point, reach): (&SurfacePoint, f32)) -> f32 {
+    let way = light_center(light, point.origin, reach) - point.origin;
+    let distance = way.length();
+    let size = match light.kind {
+        LightKind::Point { spread, .. } => spread,
+        _ => size(light, distance),
+    };
+    let far = distance.max(size);
+    let received = ((point.normal.dot(way) + size) / far).min(1.0);
+    let front = light.surface.map_or(far, |normal| -normal.dot(way));
+    if received <= 0.0 || front <= 0.0 {
+        return 0.0;
+    }
+    falloff(light, far) * light.intensity.max_element() * received * ((front + size) / far).min(1.0)
+}
+
 /// Segments to the lights.
 #[derive(Default)]
 struct Segments {
@@ -234,18 +293,24 @@ struct Segments {
 }
 
 impl Segments {
-    /// One segment to each light, to a random point if it has a size. That tells whether the light is seen; how much it would give is known, unless a
+    /// One segment to each light that is chosen, to a random point if it has a size. That tells whether the light is seen; how much it would give is known, unless a
     /// part of it is below the horizon.
     fn note(&mut self, wave: &HostWave, lights: &Lights, seed: u64, place: usize, surface: &Surface) {
         let point = &surface.point;
         let reach = wave.scene.geometry.reach(point.origin);
+        let mut choice = Choice::new(wave, (point, reach), seed);
         for (index, light) in wave.lights().iter().enumerate() {
+            let chance = choice.chance(light, (point, reach));
+            if chance == 0.0 {
+                continue;
+            }
             let target = Targets::new(&lights.aim, (index, light), point.origin, reach, seed).get(0);
             if point.normal.dot(target - point.origin) <= 0.0 {
                 continue;
             }
             let arriving = surface.arriving(&lights.targets, light, index, reach);
-            let gain = surface.coefficients.all * arriving.unwrap_or_else(|| surface.arriving_from(light, target));
+            let arriving = arriving.unwrap_or_else(|| surface.arriving_from(light, target)) / chance;
+            let gain = surface.coefficients.all * arriving;
             if gain != Vec3::ZERO {
                 self.rays.push(long_segment(point.origin, target));
                 self.gains.push((place, gain));

@@ -345,7 +345,7 @@ pub fn strength(light: &Light, direction: Vec3, distance: f32) -> Vec3 {
 
 /// What is left of a light at `distance`, over π where that is its unit.
 #[inline(always)]
-fn falloff(light: &Light, distance: f32) -> f32 {
+pub(crate) fn falloff(light: &Light, distance: f32) -> f32 {
     match (light.falloff, &light.kind) {
         (Falloff::None, _) => 1.0,
         (Falloff::InverseSquare, LightKind::Directional { .. }) => FRAC_1_PI,

@@ -1,10 +1,11 @@
 //! Gathered light where it is known: in closed rooms, on open floors, beside walls, under emitters.
 
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
 use glam::{DVec3, Vec3};
 use lightmesh_render::{AmbientSource, Crop, Device, Frame, Quality, Renderer, Settings};
-use lightmesh_scene::{LightKind, Lights, Material, Scene, Sky, SkyKind, SunPosition, Up};
+use lightmesh_scene::{Falloff, Light, LightKind, Lights, Material, Scene, Sky, SkyKind, SunPosition, Up};
 use lightmesh_testkit::{BALL_LIGHT, SceneDraft, pile, thin_wall};
 
 fn settings(size: [u32; 2]) -> Settings {
@@ -180,6 +181,45 @@ fn a_floor_receives_what_an_emitter_above_it_gives() {
     // Four times the form factor of a square above its corner.
     let quarter = 0.5f64.sqrt() * 0.5f64.sqrt().atan() * 2.0 / TAU;
     assert!((mean / (12.0 * quarter) - 1.0).abs() < 0.01, "{mean}, not {}", 12.0 * quarter);
+}
+
+#[test]
+fn of_many_lights_some_stand_for_all() {
+    let place = |[x, y, z]: [f32; 3]| LightKind::Sphere { position: Vec3::new(x, y, z), radius: 0.05 };
+    let kinds = [[-1.5, 1.6, 0.5], [0.5, 0.4, 1.0], [1.6, 1.7, -1.0]].map(place);
+    let [tangent, down] = [Vec3::new(0.6, -0.8, 0.0), Vec3::NEG_Y];
+    let spot =
+        LightKind::Spot { position: Vec3::new(0.0, 1.8, 0.0), direction: tangent, inner: 0.2, outer: 0.7, radius: 0.0 };
+    let kinds = kinds.into_iter().chain([spot]);
+    let few: Vec<Light> = kinds.map(|kind| Light::new(kind).with_falloff(Falloff::InverseSquare)).collect();
+    let panel = LightKind::Disk { position: Vec3::new(-0.5, 1.9, -0.8), normal: down, radius: 0.2 };
+    let few = [few, vec![Light::new(panel).with_surface(down).with_falloff(Falloff::InverseSquare)]].concat();
+    let part = |light: &Light| light.clone().with_intensity(light.intensity / 16.0);
+    let many: Vec<Light> = few.iter().flat_map(|light| std::iter::repeat_n(part(light), 16)).collect();
+    let mean = |lights: &[Light]| {
+        let room =
+            SceneDraft::new().painted(Material::matt(Vec3::splat(0.5))).cuboid([-2.0, 0.0, -1.5], [2.0, 2.0, 1.5]);
+        let mut scene = room.camera([1.8, 1.0, 1.2], [0.0, 0.8, 0.0]).finish("many lights");
+        scene.lights.list = lights.to_vec();
+        let frame = render(&scene, &settings([24, 16]).with_samples(1).with_layers(true));
+        let rest = &frame.layers().expect("asked for").rest;
+        rest.iter().map(|color| f64::from(color[1])).sum::<f64>() / rest.len() as f64
+    };
+    let each: f64 = few.iter().map(|light| mean(std::slice::from_ref(light))).sum();
+    let together = mean(&many);
+    assert!((together / each - 1.0).abs() < 0.01, "{together}, not {each}");
+}
+
+#[test]
+fn light_behind_a_ledge_reaches_the_room() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../bench/light/scenes/cove.toml");
+    let mut scene = Scene::open(&file).unwrap();
+    scene.complete(Up::Y);
+    let frame = render(&scene, &settings([160, 120]).with_samples(4));
+    let lower = &frame.color()[160 * 60..];
+    let mean = lower.iter().map(|color| f64::from(color[1])).sum::<f64>() / lower.len() as f64;
+    // Mitsuba's paths of any length, 0.1830: most of it is reflected several times between the ledge, the wall and the ceiling.
+    assert!((0.14..0.19).contains(&mean), "{mean}");
 }
 
 /// A pile of boxes in a clear sky, with mirrors and a lamp.

@@ -75,7 +75,8 @@ impl<R: Runtime> DeviceBounce<R> {
         device.warps("reflect", fans.sites, &self.record(fans))
     }
 
-    /// Finds the nodes that rays see; they are added where they are new. Only if they `insist`, rays ask on where something is in the way.
+    /// Finds the nodes that rays see; they are added where they are new. Only rays that insist ask on where something is in the way: all, or those
+    /// that see more than the mean.
     fn resolve(&mut self, device: &Device<R>, fans: &DeviceFans<R>, insist: bool) -> Result<(), RenderError> {
         for finer in 0..=BOUNCE_FINER {
             self.admit(device, fans, finer)?;
@@ -143,6 +144,7 @@ impl<R: Runtime> DeviceBounce<R> {
             let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
             let own = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, FAN)?;
             own.see(device)?;
+            device.threads("brighten_fans", count, &own.record)?;
             self.resolve(device, &own, false)?;
             let record = Bounce { first: first as u32, linked: (self.linked + first) as u32, ..self.record(&own) };
             device.threads("link_nodes", count, &record)?;

@@ -28,6 +28,7 @@ pub(super) struct DeviceFans<R: Runtime> {
     _hits: Buffer<R, Hit>,
     _seen: Buffer<R, SeenRay>,
     _levels: Buffer<R, i32>,
+    _brightness: Buffer<R, f32>,
 }
 
 /// Where fans begin, and how far they go.
@@ -60,6 +61,7 @@ impl<R: Runtime> DeviceFans<R> {
         let hits = pool.room("hits of gather rays", rays)?;
         let seen = pool.room("what gather rays see", rays)?;
         let levels = pool.room("levels that gather rays ask", count)?;
+        let brightness = pool.room("brightness of fans", count)?;
         let cone = fan.cone();
         // The first of several samples: a single one would be the centre of a light.
         let sampling = sampling(Sampling { samples: 2, spread: true, ..wave.job.sampling });
@@ -79,6 +81,7 @@ impl<R: Runtime> DeviceFans<R> {
             hits: hits.output(),
             seen: seen.output(),
             levels: levels.output(),
+            brightness: brightness.output(),
             count: count as u32,
             side: fan.side(),
             reach,
@@ -98,6 +101,7 @@ impl<R: Runtime> DeviceFans<R> {
             _hits: hits,
             _seen: seen,
             _levels: levels,
+            _brightness: brightness,
         })
     }
 
