@@ -69,6 +69,22 @@ pub struct Added {
     pub lights: bool,
     /// They are in the space that the camera sees, with more ambient light, since lights outside would not reach it.
     pub lights_inside: bool,
+    /// They are those of a [studio](Lighting::Studio), which has a ground, too.
+    pub studio: bool,
+}
+
+/// What lights a scene that brings no light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lighting {
+    /// A [key light and a fill light](Scene::default_lights).
+    #[default]
+    KeyAndFill,
+    /// A studio: one large key light at the upper left of the camera, a panorama of soft boxes, a ground that catches shadows and shows a light
+    /// grey background. A key light and a fill light where the key light would not reach what the camera sees or the camera is in
+    /// an interior, and where [ambient light](crate::Lights::ambient) or a background is set.
+    Studio,
+    /// A studio also in interiors.
+    StudioAnywhere,
 }
 
 /// From where a [default camera](Scene::default_camera) looks.
@@ -95,6 +111,19 @@ impl Scene {
 
     /// The same for images of this width, relative to their height: the camera that is added fills such an image.
     pub fn complete_for(&mut self, up: Up, aspect: f32) -> Added {
+        self.complete_with(Lighting::KeyAndFill, up, aspect)
+    }
+
+    /// The same with other lights. Those of a studio bring a ground, a background and an environment.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Lighting, Scene, Up};
+    /// # let mut scene = Scene::new("empty", lightmesh_scene::Geometry::default());
+    ///
+    /// let added = scene.complete_with(Lighting::Studio, Up::Y, 1.5);
+    /// assert!(added.camera && added.studio && scene.lights.environment.is_some());
+    /// ```
+    pub fn complete_with(&mut self, lighting: Lighting, up: Up, aspect: f32) -> Added {
         let mut added = Added {
             camera: self.cameras.is_empty(),
             lights: self.lights.are_missing(&self.geometry),
@@ -110,8 +139,21 @@ impl Scene {
             self.cameras.push(camera);
             added.viewpoint = viewpoint;
         }
+        let is_open = || self.lights.beside_studio(&self.geometry).is_none();
+        let may_be_studio = added.lights && lighting != Lighting::KeyAndFill && is_open();
         if added.lights {
-            let (lights, inside) = lighting(&sight, &subject, &self.cameras[0]);
+            let (lights, inside) = key_and_fill(&sight, &subject, &self.cameras[0]);
+            let is_interior = inside || added.viewpoint != Viewpoint::Front;
+            if may_be_studio && (lighting == Lighting::StudioAnywhere || !is_interior) {
+                added.studio = true;
+                let (bounds, camera) = (subject.bounds, self.cameras[0].clone());
+                // The geometry is changed where it is, not copied.
+                drop((sight, subject));
+                drop(outline);
+                drop(geometry);
+                self.light_as_studio(&bounds, &camera, up);
+                return added;
+            }
             self.lights.extend(lights);
             added.lights_inside = inside;
             if inside {
@@ -141,7 +183,12 @@ impl Scene {
     /// way ahead, the fill light above the eye; then they are weaker, since an ambient term of 0.2 goes with them.
     pub fn default_lights(&self, camera: &Camera) -> [Light; 2] {
         let outline = self.geometry.mesh.outline(OUTLINE);
-        lighting(&Sight::new(&outline), &Subject::of(&outline), camera).0
+        key_and_fill(&Sight::new(&outline), &Subject::of(&outline), camera).0
+    }
+
+    /// What stands against a [studio](Lighting::Studio) in this scene: light that it brings, or a background. `None` if nothing does.
+    pub fn beside_studio(&self) -> Option<&'static str> {
+        self.lights.beside_studio(&self.geometry)
     }
 
     /// The camera of this name.
@@ -183,7 +230,7 @@ fn view(sight: &Sight, subject: &Subject, up: Up, aspect: f32) -> (Camera, Viewp
 }
 
 /// The lights, and whether they are inside.
-fn lighting(sight: &Sight, Subject { bounds, .. }: &Subject, camera: &Camera) -> ([Light; 2], bool) {
+fn key_and_fill(sight: &Sight, Subject { bounds, .. }: &Subject, camera: &Camera) -> ([Light; 2], bool) {
     let (right, up, _) = camera.basis();
     let reach = camera.position.distance(bounds.center()).max(bounds.diagonal());
     let spread = DEFAULT_LIGHT_SPREAD * bounds.diagonal();
