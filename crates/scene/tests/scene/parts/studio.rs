@@ -68,7 +68,8 @@ fn the_studio_turns_with_the_camera_and_stands_upright() {
 #[test]
 fn a_studio_joins_only_where_nothing_gives_light() {
     let (bare, _) = completed(scene(), Up::Y);
-    let lit: [(&str, fn(&mut Scene)); 5] = [
+    type Change = fn(&mut Scene);
+    let lit: [(&str, Change); 5] = [
         ("lights of its own", |scene| scene.lights.list.push(Light::point(Vec3::splat(9.0)))),
         ("surfaces that emit light", |scene| scene.geometry_mut().materials[0].emission = Vec3::ONE),
         ("lights that were chosen, even if there are none", |scene| scene.lights.chosen = true),
