@@ -30,7 +30,7 @@ picture balloon "$models/balloon/scene.gltf"
 picture chess "$models/chess/chess-board.glb"
 picture house "$models/house/house.glb"
 picture milk_truck "$models/milk_truck/CesiumMilkTruck.glb"
-picture truck_on_ground "$models/milk_truck/CesiumMilkTruck.glb" --ground
+picture truck_on_ground "$models/milk_truck/CesiumMilkTruck.glb" --no-studio --ground
 "$program" render "$models/house/house.glb" --sun 55.03,82.92,2026-06-21+07:00,06:00-20:00/15m --size 640x480 -q \
     --sun-hours "$new/house_hours.png"
 "${PYTHON:-python3}" "$book/shrink.py" "$book/src/gallery" "$new"/*.png

@@ -59,7 +59,7 @@ def render(program, folder, name, size, output):
     file, stem = folder / name, output / name.replace("/", "-")
     picture, mask, stats = (stem.with_name(stem.name + end) for end in (".lightmesh.png", ".mask.png", ".stats.json"))
     view = ["--camera", CAMERAS[name]] if name in CAMERAS else []
-    command = [program, "render", file, "--size", f"{size}x{size}", *view, "--device", "cpu"]
+    command = [program, "render", file, "--no-studio", "--size", f"{size}x{size}", *view, "--device", "cpu"]
     done = subprocess.run([*command, "-o", picture, "--stats", stats], check=True, stderr=subprocess.PIPE, text=True)
     subprocess.run([*command, "-o", mask, "--background", "transparent", "--quality", "draft", "-q"], check=True)
     settings = json.loads(stats.read_text())["settings"]

@@ -11,6 +11,7 @@ use lightmesh::scene::{Camera, LoadOptions, SceneFormat, Up};
 use lightmesh::{Acceleration, Frame, Observer, RenderError, Scene, Settings};
 
 use crate::args::{ExposureArgs, FormArgs, ImageArgs, ReadingArgs, StorageArgs};
+use crate::plan::scene::Applied;
 pub use crate::plan::scene::ChoiceError;
 use crate::plan::{self, PlanError, SceneChoices};
 use crate::run::{Metering, describe, exposure, read_options};
@@ -131,33 +132,29 @@ impl ImageRequest {
         &self.settings.acceleration
     }
 
-    /// Whether the scene gets a ground, which is geometry.
-    pub fn has_ground(&self) -> bool {
-        self.choices.has_ground()
-    }
-
-    /// What is up in a scene: for a ground, and for what surrounds it.
-    pub fn up(&self, scene: &Scene) -> Up {
-        self.choices.up(scene).0
-    }
-
     /// Changes a scene as the flags say, and adds what it lacks: camera, lights, a ground.
     ///
     /// # Errors
     /// [`ChoiceError`] for an unknown camera or invalid surroundings.
     pub fn stage(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Staged, ChoiceError> {
-        let behind = self.choices.apply(scene, observer)?;
+        let Applied { behind, ground } = self.choices.apply(scene, observer)?;
         let exposure = exposure(scene, self.exposure);
-        Ok(Staged { metering: Metering::new(scene, exposure, self.settings.transparent, behind) })
+        Ok(Staged { metering: Metering::new(scene, exposure, self.settings.transparent, behind), ground })
     }
 }
 
 /// How the image of a scene is exposed that was [staged](ImageRequest::stage).
 pub struct Staged {
     metering: Metering,
+    ground: Option<Up>,
 }
 
 impl Staged {
+    /// The axis across the ground that was added to the scene's geometry, if there is one.
+    pub fn ground(&self) -> Option<Up> {
+        self.ground
+    }
+
     /// Renders the image by `render`, which may be called twice: with a ground that mirrors show. Returns it with the exposure of image files, in
     /// stops.
     ///

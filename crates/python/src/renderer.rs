@@ -146,9 +146,9 @@ impl Order {
         watch: &Watch,
     ) -> Result<(Kept, Staged), Failure> {
         let given = &self.scene.world.geometry;
-        let ground = self.request.has_ground().then(|| self.request.up(&self.scene.world));
         let mut world = self.scene.world.clone();
         let staged = self.request.stage(&mut world, watch)?;
+        let ground = staged.ground();
         let last = || last.lock().unwrap_or_else(PoisonError::into_inner);
         let is_same = |kept: &Kept| Arc::ptr_eq(&kept.given, given) && kept.ground == ground;
         let known = self.kept.clone().filter(is_same).or_else(|| last().clone().filter(is_same));

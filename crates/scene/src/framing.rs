@@ -1,12 +1,13 @@
 //! Cameras and lights for scenes without any, and cameras by name.
 //!
-//! What is seen from outside is framed from the front; what is an interior is seen from its open side or from inside (`rooms`). Lights are placed
+//! What is seen from outside is framed from the front, without strays (`strays`); what is an interior is seen from its open side or from inside (`rooms`). Lights are placed
 //! relative to the camera, or in the space that it sees if those do not reach it (`lights`). Both cast a few thousand rays (`rays`, `sight`).
 
 mod lights;
 mod rays;
 mod rooms;
 pub(crate) mod sight;
+mod strays;
 
 use std::cell::LazyCell;
 use std::sync::Arc;
@@ -19,6 +20,7 @@ use crate::{
 };
 use rooms::Interior;
 use sight::Sight;
+use strays::Subject;
 
 /// No camera of the scene has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -67,6 +69,22 @@ pub struct Added {
     pub lights: bool,
     /// They are in the space that the camera sees, with more ambient light, since lights outside would not reach it.
     pub lights_inside: bool,
+    /// They are those of a [studio](Lighting::Studio), which has a ground, too.
+    pub studio: bool,
+}
+
+/// What lights a scene that brings no light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lighting {
+    /// A [key light and a fill light](Scene::default_lights).
+    #[default]
+    KeyAndFill,
+    /// A studio: one large key light at the upper left of the camera, a panorama of soft boxes, a ground that catches shadows and shows a light
+    /// grey background. A key light and a fill light where the key light would not reach what the camera sees or the camera is in
+    /// an interior, and where [ambient light](crate::Lights::ambient) or a background is set.
+    Studio,
+    /// A studio also in interiors.
+    StudioAnywhere,
 }
 
 /// From where a [default camera](Scene::default_camera) looks.
@@ -93,6 +111,19 @@ impl Scene {
 
     /// The same for images of this width, relative to their height: the camera that is added fills such an image.
     pub fn complete_for(&mut self, up: Up, aspect: f32) -> Added {
+        self.complete_with(Lighting::KeyAndFill, up, aspect)
+    }
+
+    /// The same with other lights. Those of a studio bring a ground, a background and an environment.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Lighting, Scene, Up};
+    /// # let mut scene = Scene::new("empty", lightmesh_scene::Geometry::default());
+    ///
+    /// let added = scene.complete_with(Lighting::Studio, Up::Y, 1.5);
+    /// assert!(added.camera && added.studio && scene.lights.environment.is_some());
+    /// ```
+    pub fn complete_with(&mut self, lighting: Lighting, up: Up, aspect: f32) -> Added {
         let mut added = Added {
             camera: self.cameras.is_empty(),
             lights: self.lights.are_missing(&self.geometry),
@@ -102,13 +133,27 @@ impl Scene {
         let geometry = Arc::clone(&self.geometry);
         let outline = LazyCell::new(|| geometry.mesh.outline(OUTLINE));
         let sight = LazyCell::new(|| Sight::new(&outline));
+        let subject = LazyCell::new(|| Subject::of(&outline));
         if added.camera {
-            let (camera, viewpoint) = self.view(&sight, up, aspect);
+            let (camera, viewpoint) = view(&sight, &subject, up, aspect);
             self.cameras.push(camera);
             added.viewpoint = viewpoint;
         }
+        let is_open = || self.lights.beside_studio(&self.geometry).is_none();
+        let may_be_studio = added.lights && lighting != Lighting::KeyAndFill && is_open();
         if added.lights {
-            let (lights, inside) = self.lighting(&sight, &self.cameras[0]);
+            let (lights, inside) = key_and_fill(&sight, &subject, &self.cameras[0]);
+            let is_interior = inside || added.viewpoint != Viewpoint::Front;
+            if may_be_studio && (lighting == Lighting::StudioAnywhere || !is_interior) {
+                added.studio = true;
+                let (bounds, camera) = (subject.bounds, self.cameras[0].clone());
+                // The geometry is changed where it is, not copied.
+                drop((sight, subject));
+                drop(outline);
+                drop(geometry);
+                self.light_as_studio(&bounds, &camera, up);
+                return added;
+            }
             self.lights.extend(lights);
             added.lights_inside = inside;
             if inside {
@@ -118,7 +163,8 @@ impl Scene {
         added
     }
 
-    /// A camera that shows the whole scene from the front, the right and above, and fills a square image. An interior (most of its
+    /// A camera that shows the whole scene from the front, the right and above, and fills a square image; small pieces far from
+    /// everything else may be left out. An interior (most of its
     /// ground plan is in rooms, and from there it shows backs of walls or hardly anything) is instead seen through its open side if it has
     /// one, else from inside: at eye height, along the longest view, with a field of view of 60°.
     pub fn default_camera(&self, up: Up) -> Camera {
@@ -127,32 +173,8 @@ impl Scene {
 
     /// The same for images of this width, relative to their height.
     pub fn default_camera_for(&self, up: Up, aspect: f32) -> Camera {
-        self.view(&Sight::new(&self.geometry.mesh.outline(OUTLINE)), up, aspect).0
-    }
-
-    fn view(&self, sight: &Sight, up: Up, aspect: f32) -> (Camera, Viewpoint) {
-        let mesh = sight.mesh();
-        let bounds = framed(mesh.bounds());
-        let (right, front) = sides(up);
-        let from = |direction: Vec3| {
-            let mut camera = Camera {
-                name: "default".to_owned(),
-                position: bounds.center(),
-                direction,
-                up: up.axis(),
-                projection: Projection::Perspective(Fov::Vertical(VFOV)),
-                shift: Vec2::ZERO,
-                motion: None,
-            };
-            camera.position = fitting(mesh, &bounds, &camera, aspect);
-            camera
-        };
-        let camera = from(-(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize());
-        match rooms::interior(sight, &bounds, up.axis(), &camera) {
-            None => (camera, Viewpoint::Front),
-            Some(Interior::OpenSide(direction)) => (from(direction), Viewpoint::OpenSide),
-            Some(Interior::Inside(camera)) => (camera, Viewpoint::Inside),
-        }
+        let outline = self.geometry.mesh.outline(OUTLINE);
+        view(&Sight::new(&outline), &Subject::of(&outline), up, aspect).0
     }
 
     /// Two white point lights without falloff. The key light is above and to the side of the camera's eye, so that shadows fall away
@@ -160,24 +182,13 @@ impl Scene {
     /// reaches less than a fifth of what the camera sees, they are in the space that it sees: the key light high above the middle of the
     /// way ahead, the fill light above the eye; then they are weaker, since an ambient term of 0.2 goes with them.
     pub fn default_lights(&self, camera: &Camera) -> [Light; 2] {
-        self.lighting(&Sight::new(&self.geometry.mesh.outline(OUTLINE)), camera).0
+        let outline = self.geometry.mesh.outline(OUTLINE);
+        key_and_fill(&Sight::new(&outline), &Subject::of(&outline), camera).0
     }
 
-    /// The lights, and whether they are inside.
-    fn lighting(&self, sight: &Sight, camera: &Camera) -> ([Light; 2], bool) {
-        let bounds = framed(self.geometry.mesh.bounds());
-        let (right, up, _) = camera.basis();
-        let reach = camera.position.distance(bounds.center()).max(bounds.diagonal());
-        let spread = DEFAULT_LIGHT_SPREAD * bounds.diagonal();
-        let place = |beside: f32, above: f32| camera.position + reach * (above * up + beside * right);
-        let key = place(-0.5, 0.8);
-        if let Some(lights) = lights::inside(sight, &bounds, camera, key, spread) {
-            return (lights, true);
-        }
-        let light = |name: &str, position: Vec3, intensity: f32| {
-            Light::point(position).with_spread(spread).with_intensity(Vec3::splat(intensity)).named(name)
-        };
-        ([light("key", key, KEY_LIGHT), light("fill", place(0.9, 0.2), FILL_LIGHT)], false)
+    /// What stands against a [studio](Lighting::Studio) in this scene: light that it brings, or a background. `None` if nothing does.
+    pub fn beside_studio(&self) -> Option<&'static str> {
+        self.lights.beside_studio(&self.geometry)
     }
 
     /// The camera of this name.
@@ -194,6 +205,46 @@ impl Scene {
     }
 }
 
+fn view(sight: &Sight, subject: &Subject, up: Up, aspect: f32) -> (Camera, Viewpoint) {
+    let bounds = subject.bounds;
+    let (right, front) = sides(up);
+    let from = |direction: Vec3| {
+        let mut camera = Camera {
+            name: "default".to_owned(),
+            position: bounds.center(),
+            direction,
+            up: up.axis(),
+            projection: Projection::Perspective(Fov::Vertical(VFOV)),
+            shift: Vec2::ZERO,
+            motion: None,
+        };
+        camera.position = fitting(sight.mesh(), subject, &camera, aspect);
+        camera
+    };
+    let camera = from(-(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize());
+    match rooms::interior(sight, &bounds, up.axis(), &camera) {
+        None => (camera, Viewpoint::Front),
+        Some(Interior::OpenSide(direction)) => (from(direction), Viewpoint::OpenSide),
+        Some(Interior::Inside(camera)) => (camera, Viewpoint::Inside),
+    }
+}
+
+/// The lights, and whether they are inside.
+fn key_and_fill(sight: &Sight, Subject { bounds, .. }: &Subject, camera: &Camera) -> ([Light; 2], bool) {
+    let (right, up, _) = camera.basis();
+    let reach = camera.position.distance(bounds.center()).max(bounds.diagonal());
+    let spread = DEFAULT_LIGHT_SPREAD * bounds.diagonal();
+    let place = |beside: f32, above: f32| camera.position + reach * (above * up + beside * right);
+    let key = place(-0.5, 0.8);
+    if let Some(lights) = lights::inside(sight, bounds, camera, key, spread) {
+        return (lights, true);
+    }
+    let light = |name: &str, position: Vec3, intensity: f32| {
+        Light::point(position).with_spread(spread).with_intensity(Vec3::splat(intensity)).named(name)
+    };
+    ([light("key", key, KEY_LIGHT), light("fill", place(0.9, 0.2), FILL_LIGHT)], false)
+}
+
 /// The directions right and towards the viewer, for a viewer in front of a model.
 fn sides(up: Up) -> (Vec3, Vec3) {
     match up {
@@ -202,28 +253,28 @@ fn sides(up: Up) -> (Vec3, Vec3) {
     }
 }
 
-/// Where a camera of this direction has to be so that all vertices fit in an image of this width, relative to its height, in its middle.
+/// Where a camera of this direction has to be so that all vertices of what it frames fit in an image of this width, relative to its height, in its middle.
 ///
 /// In coordinates to the right, up and forward, with T the tangent of half the field of view along an axis of the image, a point is left of the right border of a
 /// camera at c if `x - c.x <= T (z - c.z)`, so the largest `x - T z` of all points bounds `c.x - T c.z`; and so for each border. The
 /// two borders of an axis fix the camera's place across it, and the axis with the larger distance decides that.
-fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera, aspect: f32) -> Vec3 {
+fn fitting(mesh: &Mesh, subject: &Subject, camera: &Camera, aspect: f32) -> Vec3 {
     let (right, up, forward) = camera.basis();
     let high = FILL * (0.5 * VFOV).to_radians().tan();
     let wide = aspect * high;
-    let center = bounds.center();
+    let center = subject.bounds.center();
     let mut borders = [f32::NEG_INFINITY; 4];
-    let mut include = |point: Vec3| {
+    let include = |point: Vec3| {
         let point = point - center;
         let (x, y, z) = (point.dot(right), point.dot(up), point.dot(forward));
         for (border, (aside, tangent)) in borders.iter_mut().zip([(x, wide), (-x, wide), (y, high), (-y, high)]) {
             *border = border.max(aside - tangent * z);
         }
     };
-    if mesh.bounds() == *bounds {
-        mesh.positions.iter().for_each(|&position| include(position));
+    if subject.has_vertices(mesh) {
+        subject.each_vertex(mesh, include);
     } else {
-        (0..8).map(|i| corner(bounds, i)).for_each(include);
+        (0..8).map(|i| corner(&subject.bounds, i)).for_each(include);
     }
     let [east, west, north, south] = borders;
     let back = ((east + west) / (2.0 * wide)).max((north + south) / (2.0 * high)).max(0.0);
@@ -234,10 +285,4 @@ fn fitting(mesh: &Mesh, bounds: &Bounds, camera: &Camera, aspect: f32) -> Vec3 {
 pub fn corner(Bounds { min, max }: &Bounds, i: u32) -> Vec3 {
     let pick = |bit: u32, low: f32, high: f32| if i & bit == 0 { low } else { high };
     Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z))
-}
-
-/// The box to frame: a unit cube if the scene is empty or a single point.
-fn framed(bounds: Bounds) -> Bounds {
-    let center = if bounds.is_empty() { Vec3::ZERO } else { bounds.center() };
-    if bounds.diagonal() > 0.0 { bounds } else { Bounds { min: center - 0.5, max: center + 0.5 } }
 }

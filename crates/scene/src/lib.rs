@@ -46,6 +46,7 @@ mod scene;
 mod scene_format;
 mod shapes;
 mod smooth;
+mod studio;
 mod texture;
 mod up;
 mod usable;
@@ -66,7 +67,7 @@ pub use environment::{
 pub use error::{LoadError, Place};
 pub use export::ExportError;
 pub use facets::Facets;
-pub use framing::{Added, UnknownCamera, Viewpoint};
+pub use framing::{Added, Lighting, UnknownCamera, Viewpoint};
 pub use geometry::Geometry;
 pub use geometry_check::GeometryError;
 pub use info::{AnimationInfo, BoundsInfo, CameraInfo, LightInfo, SceneInfo};

@@ -25,6 +25,9 @@ pub struct Lights {
     pub environment: Option<Arc<Environment>>,
     /// Whether the list is as it is meant to be: [`Scene::complete`](crate::Scene::complete) adds none, even if there are none.
     pub chosen: bool,
+    /// Whether they are those of a [studio](crate::Lighting::Studio), whose environment is meant to light surfaces by direction, without
+    /// shadows, and to be mirrored.
+    pub studio: bool,
 }
 
 impl Lights {
@@ -53,6 +56,7 @@ impl Lights {
 
     /// The light of a sky or a panorama in addition to all others.
     pub fn add(&mut self, Surroundings { environment, sun }: Surroundings) {
+        self.studio = false;
         self.list.splice(0..0, sun);
         self.environment = Some(environment.into());
     }
@@ -89,6 +93,19 @@ impl Lights {
     /// Whether a scene with this geometry needs other lights: it has none, and nothing in it emits light.
     pub(crate) fn are_missing(&self, geometry: &Geometry) -> bool {
         !self.chosen && self.environment.is_none() && self.list.is_empty() && !geometry.glows()
+    }
+
+    /// What of a scene with this geometry a [studio](crate::Lighting::Studio) would replace, or be seen before.
+    pub(crate) fn beside_studio(&self, geometry: &Geometry) -> Option<&'static str> {
+        let things = [
+            (!self.list.is_empty(), "lights of its own"),
+            (self.environment.is_some(), "surroundings that light it"),
+            (geometry.glows(), "surfaces that emit light"),
+            (self.chosen, "lights that were chosen, even if there are none"),
+            (self.ambient.is_some(), "ambient light of its own"),
+            (self.background.is_some(), "a background"),
+        ];
+        things.into_iter().find(|(is_there, _)| *is_there).map(|(_, what)| what)
     }
 
     /// Radiance of rays that hit nothing.

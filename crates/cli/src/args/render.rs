@@ -32,7 +32,7 @@ pub(crate) struct RenderArgs {
 
     /// Render a day under a clear sky, a frame for each STEP in minutes or hours, as in
     /// "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m" [default: off]
-    #[arg(long, value_name = "LAT,LON,DATE,FROM-TO/STEP", allow_hyphen_values = true, group = "motion", conflicts_with_all = ["partial", "environment"], help_heading = "Film")]
+    #[arg(long, value_name = "LAT,LON,DATE,FROM-TO/STEP", allow_hyphen_values = true, group = "motion", conflicts_with_all = ["partial", "environment", "studio"], help_heading = "Film")]
     pub(crate) sun: Option<SunSpec>,
 
     /// Write the hours of direct sun in each pixel of --sun, as numbers (exr), colours (png) or a table of objects (csv);
@@ -118,7 +118,7 @@ pub(crate) struct ImageArgs {
     #[arg(long, value_parser = words::mode(), default_value_t = Mode::LightMesh, help_heading = "Method")]
     pub(crate) mode: Mode,
 
-    /// Follow mirror reflections to this depth, in any mode
+    /// Follow mirror reflections to this depth, in any mode; in the studio, at least to 1
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, help_heading = "Method")]
     pub(crate) bounces: u32,
 
@@ -175,13 +175,22 @@ pub(crate) struct ImageArgs {
     pub(crate) crop: Option<Crop>,
 
     /// Set the background: one number, r,g,b, "#rrggbb" (sRGB) or transparent, which gives png and exr files an alpha
-    /// channel [default: the scene's, else black]
+    /// channel [default: the scene's, else black; light grey in the studio]
     #[arg(long, value_name = "COLOUR|transparent", allow_hyphen_values = true, help_heading = "Image")]
     pub(crate) background: Option<Background>,
 
     /// Add a ground below the scene that catches its shadows and shows the background, or is transparent with it
     #[arg(long, help_heading = "Scene")]
     pub(crate) ground: bool,
+
+    /// Light the model in a studio: a ground, a large key light, soft surroundings. That is the default where nothing else gives light
+    /// or a background; here also in interiors, and an error beside other light
+    #[arg(long, conflicts_with_all = ["no_studio", "lights", "sky", "environment", "ambient", "background"], help_heading = "Scene")]
+    pub(crate) studio: bool,
+
+    /// Give a model without lights a key light and a fill light only
+    #[arg(long, help_heading = "Scene")]
+    pub(crate) no_studio: bool,
 
     /// Keep finished rows if the run is interrupted; a second Ctrl-C ends it at once
     #[arg(long, help_heading = "Image")]
@@ -201,7 +210,7 @@ pub(crate) struct ImageArgs {
     pub(crate) up: Up,
 
     /// Replace the scene's lights: position, intensity (one number or r,g,b) and radius, as in "3,8,2;0.9;0.25";
-    /// repeatable [default: the scene's, else a key and a fill light]
+    /// repeatable [default: the scene's, else a studio]
     #[arg(long = "light", value_name = "P[;I[;RADIUS]]", allow_hyphen_values = true, help_heading = "Scene")]
     pub(crate) lights: Vec<LightSpec>,
 

@@ -26,8 +26,8 @@ pub(super) fn of(args: &RenderArgs) -> BTreeMap<String, String> {
         values![args.storage; format, transfer, view, bit_depth, dither, exr_type, exr_compression, exr_parts];
     let exposure = values![args.exposure; exposure];
     let image = values![args.image;
-        mode, bounces, step, radius, weight, lookup, quality, aa, filter, samples, seed, size, crop, background, ground, camera,
-        camera_name, up, lights, falloff, ambient, ambient_light, sky, environment,
+        mode, bounces, step, radius, weight, lookup, quality, aa, filter, samples, seed, size, crop, background, ground, studio,
+        no_studio, camera, camera_name, up, lights, falloff, ambient, ambient_light, sky, environment,
     ];
     let reading = values![args.scene.reading; scene_format];
     let all = [&film[..], &form, &storage, &exposure, &image, &reading];

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use glam::{DVec3, Vec3};
 use lightmesh::scene::{
-    Camera, CameraError, Environment, EnvironmentError, Light, LightKind, Lights, SceneFormat, SkyError, Surroundings,
-    UnknownCamera, Up, Viewpoint,
+    Camera, CameraError, Environment, EnvironmentError, Light, LightKind, Lighting, Lights, SceneFormat, SkyError,
+    Surroundings, UnknownCamera, Up, Viewpoint,
 };
 use lightmesh::{Observer, Scene};
 use lightmesh_memory::Budget;
@@ -26,6 +26,20 @@ pub enum ChoiceError {
     /// The panorama cannot be used.
     #[error("--environment: {0}")]
     Environment(#[from] EnvironmentError),
+    /// A studio is asked for where there is light.
+    #[error("--studio: the scene has {what}, which a studio would replace; leave the flag out to render it as it is")]
+    Studio {
+        /// What stands against it.
+        what: &'static str,
+    },
+}
+
+/// What a scene shows that was changed as the flags say.
+pub(crate) struct Applied {
+    /// What the image is to show behind a ground, if no background is set.
+    pub(crate) behind: Option<f32>,
+    /// The axis across the ground, if one was added.
+    pub(crate) ground: Option<Up>,
 }
 
 /// Camera, lights, surroundings, ambient term and background as typed.
@@ -43,6 +57,7 @@ pub(crate) struct SceneChoices {
     sky: Option<SkySpec>,
     environment: Option<EnvironmentSpec>,
     ground: bool,
+    lighting: Lighting,
     /// Width of the image, relative to its height.
     aspect: f32,
     budget: Budget,
@@ -76,6 +91,7 @@ impl SceneChoices {
             sky: args.sky,
             environment: args.environment.clone(),
             ground: args.ground,
+            lighting: lighting(args),
             aspect: args.size.0[0] as f32 / args.size.0[1] as f32,
             budget: Budget::new(memory_limit),
         })
@@ -86,9 +102,9 @@ impl SceneChoices {
         SceneChoices { sky: sun.map(|sun| sun.sky_at(0)).or(self.sky), ..self }
     }
 
-    /// Applies camera, lights, surroundings, ambient term and background to the scene; reports which defaults had to be added. Returns what the image is to
-    /// show behind a ground, if no background is set.
-    pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Option<f32>, ChoiceError> {
+    /// Applies camera, lights, surroundings, ambient term and background to the scene; reports which defaults had to be added. Returns what
+    /// became of a ground.
+    pub(crate) fn apply(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Applied, ChoiceError> {
         if let Some(camera) = self.camera(scene)? {
             scene.cameras = vec![camera];
         }
@@ -108,7 +124,10 @@ impl SceneChoices {
         if let Some(Background::Color(Color(background))) = self.background {
             scene.lights.background = Some(background);
         }
-        let added = scene.complete_for(up, self.aspect);
+        if let (Lighting::StudioAnywhere, Some(what)) = (self.lighting, scene.beside_studio()) {
+            return Err(ChoiceError::Studio { what });
+        }
+        let added = scene.complete_with(self.lighting, up, self.aspect);
         if added.camera {
             let from = match added.viewpoint {
                 Viewpoint::OpenSide => "looks into it through its open side",
@@ -121,7 +140,10 @@ impl SceneChoices {
             ));
         }
         if added.lights {
-            observer.note(if added.lights_inside {
+            observer.note(if added.studio {
+                "the scene has no lights: using a studio, a large key light at the upper left of the camera, soft surroundings and a ground \
+                 (--light, --sky or --environment replace it, --no-studio leaves a key and a fill light)"
+            } else if added.lights_inside {
                 "the scene has no lights, and lights outside would not reach the visible surfaces: using a key light ahead of the \
                  camera, a weaker fill light above it and more ambient light (--light replaces the lights, --ambient the ambient light)"
             } else {
@@ -130,17 +152,20 @@ impl SceneChoices {
             });
         }
         // Cameras and lights that were added look at the scene alone.
+        if added.studio {
+            // Its background is what is shown, not a radiance.
+            return Ok(Applied {
+                behind: scene.lights.background.take().map(|background| background.x),
+                ground: Some(up),
+            });
+        }
         if self.ground {
             scene.add_ground(up);
         }
         let lights = &scene.lights;
         let is_open = self.background.is_none() && lights.background.is_none() && lights.environment.is_none();
-        Ok((self.ground && is_open).then_some(GROUND_BACKGROUND))
-    }
-
-    /// Whether the scene gets a ground.
-    pub(crate) fn has_ground(&self) -> bool {
-        self.ground
+        let behind = (self.ground && is_open).then_some(GROUND_BACKGROUND);
+        Ok(Applied { behind, ground: self.ground.then_some(up) })
     }
 
     /// What is up, and why it is not what is usual.
@@ -207,5 +232,15 @@ impl SceneChoices {
             radius => LightKind::Sphere { position, radius },
         };
         Light::new(kind).with_intensity(light.intensity).with_falloff(self.falloff)
+    }
+}
+
+/// What lights a scene that brings no light.
+fn lighting(args: &ImageArgs) -> Lighting {
+    match args {
+        ImageArgs { studio: true, .. } => Lighting::StudioAnywhere,
+        // A studio has a background of its own, which would not be seen where nothing is to be.
+        ImageArgs { no_studio: true, .. } | ImageArgs { background: Some(_), .. } => Lighting::KeyAndFill,
+        _ => Lighting::Studio,
     }
 }

@@ -76,8 +76,8 @@ impl Metering {
     }
 
     /// Whether mirrors show the background that is missing.
-    fn is_reflected(&self, settings: &Settings) -> bool {
-        self.is_apart() && settings.bounces > 0
+    fn is_reflected(&self, scene: &Scene, settings: &Settings) -> bool {
+        self.is_apart() && settings.bounces_in(scene) > 0
     }
 
     /// Renders an image by `render`, and puts what is missing behind it; also returns its exposure in stops.
@@ -95,7 +95,7 @@ impl Metering {
         let mut frame = render(prepared, &settings)?;
         let stops = self.stops(&frame, observer);
         if let Some(background) = self.background(stops) {
-            if self.is_reflected(&settings) && !observer.cancelled() {
+            if self.is_reflected(&prepared.scene, &settings) && !observer.cancelled() {
                 settings.transparent = false;
                 let lights = prepared.scene.lights.clone().with_background(background);
                 frame = render(&prepared.with_lights(lights), &settings)?;

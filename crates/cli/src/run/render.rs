@@ -45,8 +45,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(file) = plan.choices.file() {
         plan.files.outputs.keep("the environment", Some(file))?;
     }
-    let behind = plan.choices.apply(&mut scene, &watcher)?;
-    let metering = metering(&mut scene, &plan, behind);
+    let applied = plan.choices.apply(&mut scene, &watcher)?;
+    let metering = metering(&mut scene, &plan, applied.behind);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
     film::explain(&scene, plan.film.is_some(), &watcher);
     let studio =

@@ -24,7 +24,8 @@ fn choices_made_for_the_user_are_said_and_quiet_is_quiet() {
     let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16"]);
     assert!(done.stderr.contains("device auto: using "), "{done:?}");
     assert!(
-        done.stderr.contains("the scene has no lights: using a key light above the camera and a weaker fill light"),
+        done.stderr
+            .contains("the scene has no lights: using a studio, a large key light at the upper left of the camera"),
         "{done:?}"
     );
     assert!(done.stderr.contains("64 samples of each light, quality good (--quality sets another)"), "{done:?}");
@@ -33,6 +34,65 @@ fn choices_made_for_the_user_are_said_and_quiet_is_quiet() {
     assert!(done.stderr.contains("chosen for this image (--step sets another)"), "{done:?}");
     let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "-q"]);
     assert_eq!(done.stderr, "");
+    let done = place.good(&["render", "room.toml", "-o", "a.png", "--size", "16x16", "--no-studio"]);
+    assert!(
+        done.stderr.contains("the scene has no lights: using a key light above the camera and a weaker fill light"),
+        "{done:?}"
+    );
+}
+
+#[test]
+fn a_model_without_light_stands_in_a_studio() {
+    let place = Place::new();
+    place.write("ball.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
+    let base = ["render", "ball.toml", "--size", "32x32", "--quality", "draft"];
+    let picture = |flags: &[&str]| {
+        place.good(&[&base[..], &["-o", "a.exr"], flags].concat());
+        place.read("a.exr")
+    };
+    let studio = picture(&[]);
+    let frame = Frame::load(place.path("a.exr")).unwrap();
+    // The ground shows the background from border to border but where there is a shadow, and the ball is lighter than black everywhere.
+    for corner in [0, 31, 31 * 32] {
+        assert!(
+            frame.color()[corner].iter().all(|channel| (channel - 0.8).abs() < 1e-3),
+            "{:?}",
+            frame.color()[corner]
+        );
+    }
+    assert!(frame.color().iter().any(|color| color[0] < 0.7) && frame.color().iter().all(|color| color[0] > 0.1));
+    // It has a ground already, and is the same if it is asked for.
+    assert_eq!((picture(&["--studio"]), picture(&["--ground"])), (studio.clone(), studio.clone()));
+    // Whatever gives light or a background takes its place.
+    let plain = picture(&["--no-studio"]);
+    assert!(plain != studio && picture(&["--background", "0"]) == plain, "black is the default background");
+    for flags in
+        [&["--light", "3,8,2"][..], &["--sky", "uniform"], &["--ambient", "0.2"], &["--background", "transparent"]]
+    {
+        assert_eq!(picture(flags), picture(&[flags, &["--no-studio"]].concat()), "{flags:?}");
+        let refused = place.refused(&[&base[..], &["-o", "a.exr", "--studio"], flags].concat());
+        assert!(refused.contains("cannot be used with"), "{refused}");
+    }
+}
+
+#[test]
+fn a_studio_does_not_replace_light() {
+    let place = Place::new();
+    let ball = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+    for (light, what) in [
+        ("[[light]]\nkind = \"point\"\nposition = [3, 8, 2]\n", "lights of its own"),
+        ("[ambient]\nintensity = [0.1, 0.1, 0.1]\n", "ambient light of its own"),
+        ("[ambient]\nbackground = [0.6, 0.75, 0.9]\n", "a background"),
+    ] {
+        place.write("lit.toml", &format!("{light}{ball}"));
+        let base = ["render", "lit.toml", "--size", "16x16", "-o", "a.exr"];
+        place.good(&base);
+        let picture = place.read("a.exr");
+        place.good(&[&base[..], &["--no-studio"]].concat());
+        assert_eq!(place.read("a.exr"), picture, "{what}");
+        let refused = place.refused(&[&base[..], &["--studio"]].concat());
+        assert!(refused.contains(&format!("--studio: the scene has {what}")), "{refused}");
+    }
 }
 
 #[test]

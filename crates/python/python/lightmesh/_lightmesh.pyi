@@ -280,7 +280,8 @@ class Environment:
 class Scene:
     """Geometry, lights and cameras. Geometry is shared and never changes; lights, cameras and surroundings can be set at any time.
 
-    Without `lights` (`None`), images show it by a key and a fill light, as the command line does; an empty list is darkness. `instances`
+    Without `lights` (`None`), images show it in a studio, as the command line does, or with `no_studio=True` by a key and a fill light; an
+    empty list is darkness. `instances`
     says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many triangles in all
     ("auto"). Small surfaces that emit get lights, `lamps`, as those of files have; in a frame they come after `lights`. What had to be
     corrected is a `SceneWarning`.

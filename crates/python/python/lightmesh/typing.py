@@ -39,6 +39,8 @@ class ImageSettings(TypedDict, total=False):
     crop: tuple[int, int, int, int] | str | None
     background: Color | str | None
     ground: bool | None
+    studio: bool | None
+    no_studio: bool | None
     camera: Camera | str | None
     light: str | Sequence[str] | None
     falloff: Falloff | None

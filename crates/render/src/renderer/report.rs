@@ -55,7 +55,7 @@ fn settings(resolved: &Resolved, device: &'static str, rows_per_band: u32) -> Se
     let lights = &scene.scene.lights;
     let mut stats = SettingsStats {
         mode: settings.mode.name(),
-        bounces: settings.bounces,
+        bounces: settings.bounces_in(&scene.scene),
         size: settings.size,
         // Set where the part is cut out.
         crop: None,

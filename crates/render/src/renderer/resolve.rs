@@ -90,11 +90,12 @@ impl<'a> Resolved<'a> {
         let technique = Technique::resolve(&Request { scene, settings, view: &whole, observer, bounds })?;
         let lights = LightGroups { lights: scene.scene.lights.len(), at_once: technique.lights_at_once() };
         let samples = Technique::samples(settings);
+        let bounces = settings.bounces_in(&scene.scene);
         let antialiasing = match Technique::pixel_samples(settings) {
             1 => None,
             number => {
                 let all = Antialiasing::new(number, settings.filter, settings.seed, samples);
-                let (mirrors, keeps) = (settings.bounces > 0, technique.needs_neighbours());
+                let (mirrors, keeps) = (bounces > 0, technique.needs_neighbours());
                 Some(Antialiasing { apart: all.apart || settings.sharing == Sharing::Never, mirrors, keeps, ..all })
             }
         };
@@ -113,7 +114,7 @@ impl<'a> Resolved<'a> {
             },
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
             antialiasing,
-            bounces: settings.bounces,
+            bounces,
             lets_through: scene.lets_through(),
             lights,
             most_rows: settings.partial.then(|| bands::rows_in_parts(window.size[1])),

@@ -297,7 +297,8 @@ parse_by_name!(Filter, "filter");
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AmbientSource {
-    /// The mesh where an environment gives the ambient light, or all lights are lamps, unless ambient light is set; else a constant.
+    /// The mesh where an environment gives the ambient light, or all lights are lamps, unless ambient light is set or these are the lights of a
+    /// [studio](lightmesh_scene::Lighting::Studio); else a constant.
     #[default]
     Auto,
     /// A constant, or what a sky gives to surfaces with nothing in between.
@@ -327,7 +328,9 @@ impl AmbientSource {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            AmbientSource::Auto => "Mesh with sky, environment or only lamps; constant otherwise, or by --ambient",
+            AmbientSource::Auto => {
+                "Mesh with sky, environment or only lamps; constant otherwise, by --ambient or in a studio"
+            }
             AmbientSource::Constant => "The ambient intensity; under a sky by direction, without shadows",
             AmbientSource::Mesh => "Gathered from the sky and other surfaces, in place of --ambient",
             AmbientSource::Rays => "Gathered by thousands of rays at each surface point: slow, the reference",
@@ -341,6 +344,7 @@ impl AmbientSource {
         }
         let lights = &scene.lights;
         match lights.ambient {
+            None if lights.studio => AmbientSource::Constant,
             None if lights.environment.is_some() || lights.are_lamps() || scene.geometry.glows() => AmbientSource::Mesh,
             _ => AmbientSource::Constant,
         }

@@ -5,7 +5,7 @@ mod choices;
 mod crop;
 mod setting;
 
-use lightmesh_scene::{Camera, Up, Weight};
+use lightmesh_scene::{Camera, Scene, Up, Weight};
 
 pub use acceleration::Acceleration;
 pub use choices::{AmbientSource, Filter, Lookup, Mode, Quality, ShadowTests, Sharing, ShortTests, Step, UnknownStep};
@@ -122,6 +122,12 @@ impl Settings {
     /// Depth of mirror recursion.
     pub fn with_bounces(self, bounces: u32) -> Settings {
         Settings { bounces, ..self }
+    }
+
+    /// The depth of mirror reflections in a scene: at least 1 in a [studio](lightmesh_scene::Lighting::Studio), whose surroundings are there to be
+    /// mirrored.
+    pub fn bounces_in(&self, scene: &Scene) -> u32 {
+        self.bounces.max(u32::from(scene.lights.studio))
     }
 
     /// Width and height in pixels.

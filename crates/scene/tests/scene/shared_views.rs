@@ -79,3 +79,21 @@ fn the_court_is_lit_from_within() {
     // High above the floor, in the nave and ahead of the camera.
     assert!(key.y > 8.0 && key.z.abs() < 4.0 && key.x > -10.0 && key.x < 10.0, "{key}");
 }
+
+#[test]
+#[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
+fn pawns_beside_the_board_do_not_make_it_small() {
+    let (scene, _) = bare(&shared().join("chess/chess-board.glb"));
+    let camera = &scene.cameras[0];
+    let (right, up, forward) = camera.basis();
+    let mesh = &scene.geometry.mesh;
+    // Three lie where x is beyond 137. What is framed fills the image from one border to the other without them.
+    let of_board = mesh.positions.iter().filter(|position| position.x.abs() < 137.0);
+    let extents = of_board.fold([f32::NEG_INFINITY; 4], |extents, &position| {
+        let way = position - camera.position;
+        let scale = way.dot(forward).recip() / 20.0f32.to_radians().tan();
+        let sides = [way.dot(right), -way.dot(right), way.dot(up), -way.dot(up)];
+        std::array::from_fn(|side| extents[side].max(scale * sides[side]))
+    });
+    assert!(extents[0].min(extents[1]) > 0.9 && extents.iter().all(|&extent| extent < 0.93), "{extents:?}");
+}

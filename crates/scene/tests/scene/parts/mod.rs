@@ -27,6 +27,7 @@ mod principled;
 mod quote;
 mod shapes;
 mod smooth;
+mod studio;
 mod texture;
 mod up;
 mod usable;

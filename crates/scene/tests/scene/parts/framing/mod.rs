@@ -1,5 +1,6 @@
 mod rooms;
 mod sight;
+mod strays;
 
 use glam::Vec3;
 use lightmesh_scene::internals::framing::{FILL, VFOV, corner};
