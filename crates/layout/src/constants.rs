@@ -286,6 +286,14 @@ constants! {
     /// A ray goes on at a surface, through it or mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
     /// no code of an image.
     LEAST_ONWARD: f32 = 1.0 / 4096.0;
+    /// Surface points of which a small share reaches the pixel follow fewer samples of lights through panes: levels of that.
+    FILTER_LEVELS: u32 = 3;
+    /// Each level takes this part of the samples of the one before, where at most this part of its share reaches the pixel.
+    PART_OF_LEVEL: f32 = 1.0 / 4.0;
+    /// So many of its bits.
+    LEVEL_SHIFT: u32 = 2;
+    /// More samples are not followed at levels beyond the first: one set of rows has them.
+    MOST_OF_LEVEL: u32 = 64;
     /// Surfaces that mirror this share at most are faint mirrors: half of a pixel's samples show what is in them.
     FAINT_MIRROR: f32 = 1.0 / 8.0;
     /// Mirror rays of a pixel that meet one surface are one if at most this share of what it mirrors reaches the pixel.

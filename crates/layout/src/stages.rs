@@ -110,6 +110,10 @@ records! {
         passed: Out<Vec3>,
         /// 1: one ray to the centre of each light.
         middle: u32,
+        /// The level whose surface points are followed.
+        level: u32,
+        /// How many parts the samples of each light are divided into: each ray takes one.
+        parts: u32,
         /// Padding to a multiple of eight bytes.
         spare: u32,
     }

@@ -193,6 +193,14 @@
 // A ray goes on at a surface, through it or mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
 // no code of an image.
 #define LEAST_ONWARD 0x1p-12f
+// Surface points of which a small share reaches the pixel follow fewer samples of lights through panes: levels of that.
+#define FILTER_LEVELS 3u
+// Each level takes this part of the samples of the one before, where at most this part of its share reaches the pixel.
+#define PART_OF_LEVEL 0x1p-2f
+// So many of its bits.
+#define LEVEL_SHIFT 2u
+// More samples are not followed at levels beyond the first: one set of rows has them.
+#define MOST_OF_LEVEL 64u
 // Surfaces that mirror this share at most are faint mirrors: half of a pixel's samples show what is in them.
 #define FAINT_MIRROR 0x1p-3f
 // Mirror rays of a pixel that meet one surface are one if at most this share of what it mirrors reaches the pixel.
@@ -1637,16 +1645,20 @@ struct alignas(8) Filters {
     const Vec3 *normals;
     Vec3 *passed;
     unsigned middle;
+    unsigned level;
+    unsigned parts;
     unsigned spare;
 };
-static_assert(sizeof(Filters) == 2944, "size of Filters");
+static_assert(sizeof(Filters) == 2952, "size of Filters");
 static_assert(PLACE_OF(Filters, scene) == 0, "place of Filters::scene");
 static_assert(PLACE_OF(Filters, shadows) == 664, "place of Filters::shadows");
 static_assert(PLACE_OF(Filters, triangles) == 2896, "place of Filters::triangles");
 static_assert(PLACE_OF(Filters, normals) == 2920, "place of Filters::normals");
 static_assert(PLACE_OF(Filters, passed) == 2928, "place of Filters::passed");
 static_assert(PLACE_OF(Filters, middle) == 2936, "place of Filters::middle");
-static_assert(PLACE_OF(Filters, spare) == 2940, "place of Filters::spare");
+static_assert(PLACE_OF(Filters, level) == 2940, "place of Filters::level");
+static_assert(PLACE_OF(Filters, parts) == 2944, "place of Filters::parts");
+static_assert(PLACE_OF(Filters, spare) == 2948, "place of Filters::spare");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;

@@ -30,7 +30,8 @@ const WORD: u32 = u32::BITS;
 /// The inverse of the golden ratio: its multiples are spread evenly over the unit interval.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Numbers of samples whose rows are kept: an image needs up to three, and finding them takes as long as a wave of rays in a small image.
+/// Numbers of samples whose rows are kept: an image needs up to three, with panes up to eight, and finding them takes as long as a wave of rays in
+/// a small image.
 pub const MOST_KNOWN: usize = 8;
 /// The rows that were found last.
 pub static KNOWN: Mutex<Vec<(u32, Arc<Rows>)>> = Mutex::new(Vec::new());

@@ -198,6 +198,69 @@ fn filtered_light_is_a_mean_over_the_samples_that_nothing_hides() {
     }
 }
 
+/// The floor and its panes seen from above all panes, through them.
+fn seen_from_above(light: LightKind, materials: &[Material]) -> Scene {
+    let mut scene = shaded(light, materials);
+    scene.cameras[0].position = Vec3::new(0.0, 3.5, 0.0);
+    scene
+}
+
+#[test]
+fn a_surface_behind_many_panes_gets_what_they_leave_by_few_samples() {
+    // A quarter of the samples behind two panes, a sixteenth behind five; all of them lose as much.
+    for count in [1, 2, 5] {
+        let stack = vec![black().with_opacity(Opacity::blend(0.5).with_filter([1.0, 0.9, 0.8])); count];
+        let left = Vec3::new(0.5, 0.45, 0.4).powf(2.0 * count as f32);
+        for (name, settings) in techniques() {
+            for light in [POINT, LAMP] {
+                let lit = render(&seen_from_above(light.clone(), &[]), &settings);
+                let seen = render(&seen_from_above(light.clone(), &stack), &settings);
+                for (seen, lit) in seen.color().iter().zip(lit.color()) {
+                    let (seen, lit) = (Vec3::from(*seen), Vec3::from(*lit));
+                    assert!(lit.min_element() > 0.01, "{name}: the floor is lit");
+                    assert!(
+                        (seen - left * lit).abs().max_element() < 1e-4,
+                        "{name}, {count}: {seen}, not {left} of {lit}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Surfaces of little opacity one over the other, partly in the shadow of a wall and in that of a darker pane.
+fn veils(count: usize) -> Scene {
+    let veil = Material::matt(Vec3::ONE).with_opacity(Opacity::blend(0.05));
+    let corners =
+        |height: f64, from: f64| [[from, height, -4.0], [from, height, 4.0], [4.0, height, 4.0], [4.0, height, -4.0]];
+    let draft = SceneDraft::new().floor(0.0, 20.0).light(LAMP).orthographic([0.0, 2.2, 0.0], [0.0; 3], 2.0);
+    let draft = draft.painted(veil);
+    let draft = (0..count).fold(draft, |draft, index| draft.quad(corners(0.5 + index as f64 / 32.0, -4.0)));
+    let draft = draft.painted(black().with_opacity(Opacity::blend(0.6))).quad(corners(2.5, -1.2));
+    draft.painted(black()).quad(corners(3.0, -1.0)).finish("veils")
+}
+
+#[test]
+fn few_samples_find_the_mean_light_of_veils() {
+    let seen = |samples| render(&veils(20), &settings().with_samples(samples));
+    let (few, many) = (seen(16), seen(1024));
+    let mean = |frame: &Frame| frame.color().iter().map(|color| color[1]).sum::<f32>() / frame.color().len() as f32;
+    assert!((mean(&few) / mean(&many) - 1.0).abs() < 0.01, "{} instead of {}", mean(&few), mean(&many));
+    // No more noise than a surface has with 16 samples: half of one of them in penumbrae, of a light of about 1.
+    let worst = few.color().iter().zip(many.color()).map(|(few, many)| (few[1] - many[1]).abs()).fold(0.0, f32::max);
+    assert!(worst < 0.1, "{worst}");
+}
+
+#[test]
+fn rays_to_lights_are_as_few_as_what_veils_show() {
+    let rays =
+        |count| render(&veils(count), &settings().with_mode(Mode::Area).with_samples(64)).stats.counts.shadow_rays;
+    let (few, many) = (rays(1), rays(21));
+    // Those of the technique, 64 from each veil, and less than a tenth of them through panes.
+    let pixels = u64::from(SIZE[0] * SIZE[1]);
+    assert!(many - few <= 20 * pixels * 64 * 11 / 10, "{few} and {many}");
+}
+
 #[test]
 fn given_points_get_what_panes_leave() {
     let pane = black().with_opacity(Opacity::blend(0.25).with_filter([1.0, 0.5, 0.75]));

@@ -1,10 +1,11 @@
 //! Filtered light on the CPU: all samples of a light from one surface point at once.
 
 use glam::Vec3;
-use lightmesh_layout::constants::MOST_THROUGHS;
+use lightmesh_layout::constants::{FILTER_LEVELS, MOST_THROUGHS, PART_OF_LEVEL};
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
+use super::levels;
 use crate::accel::{Hit, Ray, TangentPlanes};
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
@@ -20,8 +21,9 @@ use crate::surface::{SurfacePoint, long_segment};
 /// `visibility` with what `panes` leave of it.
 pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut visibility: Visibility) -> Visibility {
     let wave = Wave { lights: visibility.lights.clone().into(), ..*wave };
-    let rows = Rows::of(aim);
-    let emitters = Emitter::all(&wave, aim, &rows);
+    let levels = levels(aim);
+    let rows: Vec<_> = levels.iter().map(Rows::of).collect();
+    let emitters: Vec<_> = levels.iter().zip(&rows).map(|(aim, rows)| Emitter::all(&wave, aim, rows)).collect();
     visibility.passed = visibility.share.par_iter().map(|&share| Vec3::splat(share)).collect();
     let size = batch(wave.hits.len());
     visibility.colored_parts(size).into_par_iter().enumerate().for_each(|(number, mut planes)| {
@@ -31,14 +33,19 @@ pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut vis
             let mut batch = Batch::new(&wave, panes);
             for ray in rays.filter(|&ray| wave.sees(ray)) {
                 let point = wave.shadow_point(ray);
-                for (emitter, (shares, passed)) in emitters.iter().zip(&mut planes) {
+                let level = if levels.len() > 1 { level_of(&wave, panes, ray) } else { 0 };
+                for (emitter, (shares, passed)) in emitters[level].iter().zip(&mut planes) {
                     let (share, passed) = (&mut shares[ray - first], &mut passed[ray - first]);
                     if *share <= 0.0 {
                         continue;
                     }
-                    let lost = batch.lost(emitter, ray, &emitter.seen_from(&wave.scene.geometry, &point));
-                    if lost != Vec3::ZERO {
-                        *passed = (Vec3::splat(*share) - lost / emitter.samples() as f32).max(Vec3::ZERO);
+                    let point = emitter.seen_from(&wave.scene.geometry, &point);
+                    let left = match level {
+                        0 => batch.left_of_all(emitter, ray, &point, *share),
+                        _ => batch.left_of_few(emitter, ray, &point).map(|left| *share * left),
+                    };
+                    if let Some(left) = left {
+                        *passed = left;
                         *share = passed.element_sum() / 3.0;
                     }
                 }
@@ -46,6 +53,20 @@ pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut vis
         });
     });
     visibility
+}
+
+/// The level of what a ray sees: how small a share of what it shows reaches the pixel.
+fn level_of(wave: &HostWave, panes: &PreparedScene, ray: usize) -> usize {
+    if wave.rays.depth == 0 {
+        return 0;
+    }
+    let shown = (Vec3::ONE - transmittance(panes, &wave.rays.rays[ray], &wave.hits[ray])).max_element();
+    let share = wave.parts as f32 * wave.rays.weight(ray).max_element() * shown;
+    let (mut level, mut most) = (0, PART_OF_LEVEL);
+    while level + 1 < FILTER_LEVELS as usize && share <= most {
+        (level, most) = (level + 1, most * PART_OF_LEVEL);
+    }
+    level
 }
 
 /// The shadow rays of one surface point to one light.
@@ -67,11 +88,59 @@ impl<'a> Batch<'a> {
         Batch { wave, panes, targets: Vec::new(), sets: Vec::new(), left: Vec::new(), going: Vec::new() }
     }
 
+    /// What is left of a share of a light by all of its samples; `None` if that is all of it.
+    fn left_of_all(&mut self, emitter: &Emitter, ray: usize, point: &SurfacePoint, share: f32) -> Option<Vec3> {
+        let lost = self.lost(emitter, ray, point);
+        (lost != Vec3::ZERO).then(|| (Vec3::splat(share) - lost / emitter.samples() as f32).max(Vec3::ZERO))
+    }
+
+    /// What is left of a light by the mean of few samples; `None` if that is all of it.
+    fn left_of_few(&mut self, emitter: &Emitter, ray: usize, point: &SurfacePoint) -> Option<Vec3> {
+        // 1. What is left of each sample.
+        if !self.follow(emitter, ray, point) {
+            return None;
+        }
+        // 2. What is opaque hides some of those of which something is lost.
+        let mut hidden = self.dimmed_hidden(point).into_iter();
+        // 3. The means over what is not hidden, and over all.
+        let (mut seen, mut seen_count, mut all) = (Vec3::ZERO, 0.0, Vec3::ZERO);
+        for &left in &self.left {
+            all += left;
+            if left == Vec3::ONE || hidden.next().is_some_and(|(_, hidden)| !hidden) {
+                seen += left;
+                seen_count += 1.0;
+            }
+        }
+        let mean = if seen_count > 0.0 { seen / seen_count } else { all / self.left.len() as f32 };
+        (mean != Vec3::ONE).then_some(mean)
+    }
+
     /// The sum of what is lost on the way to samples that nothing opaque hides.
     fn lost(&mut self, emitter: &Emitter, ray: usize, point: &SurfacePoint) -> Vec3 {
-        // 1. What is left of each sample, if any surface may be on the way.
-        if !self.may_meet(emitter, point) {
+        // 1. What is left of each sample.
+        if !self.follow(emitter, ray, point) {
             return Vec3::ZERO;
+        }
+        // 2. What is opaque hides some of those of which something is lost.
+        let dimmed = self.dimmed_hidden(point);
+
+        // 3. The sums of sets.
+        let (mut sum, mut of_set, mut set) = (Vec3::ZERO, Vec3::ZERO, 0);
+        for (index, hidden) in dimmed {
+            if self.sets[index] != set {
+                (sum, of_set, set) = (sum + of_set, Vec3::ZERO, self.sets[index]);
+            }
+            if !hidden {
+                of_set += Vec3::ONE - self.left[index];
+            }
+        }
+        sum + of_set
+    }
+
+    /// Finds what is left of each sample above the horizon. Returns whether anything may be lost.
+    fn follow(&mut self, emitter: &Emitter, ray: usize, point: &SurfacePoint) -> bool {
+        if !self.may_meet(emitter, point) {
+            return false;
         }
         self.targets.clear();
         self.sets.clear();
@@ -81,30 +150,15 @@ impl<'a> Batch<'a> {
                 self.sets.push(set);
             }
         });
-        if !self.pass(point.origin) {
-            return Vec3::ZERO;
-        }
+        self.pass(point.origin)
+    }
 
-        // 2. What is opaque hides some of those of which something is lost.
-        let dimmed = (0..self.targets.len()).filter(|&index| self.left[index] != Vec3::ONE);
-        let (mut owners, mut segments) = (Vec::new(), Vec::new());
-        for index in dimmed {
-            owners.push(index);
-            segments.push(long_segment(point.origin, self.targets[index]));
-        }
+    /// The samples of which something is lost, and whether anything opaque hides each.
+    fn dimmed_hidden(&self, point: &SurfacePoint) -> Vec<(usize, bool)> {
+        let dimmed = || (0..self.targets.len()).filter(|&index| self.left[index] != Vec3::ONE);
+        let segments: Vec<Ray> = dimmed().map(|index| long_segment(point.origin, self.targets[index])).collect();
         Tally::add(&self.wave.job.tally.shadow_rays, segments.len() as u64);
-
-        // 3. The sums of sets.
-        let (mut sum, mut of_set, mut set) = (Vec3::ZERO, Vec3::ZERO, 0);
-        for (index, hidden) in owners.into_iter().zip(hidden(self.wave, &segments)) {
-            if self.sets[index] != set {
-                (sum, of_set, set) = (sum + of_set, Vec3::ZERO, self.sets[index]);
-            }
-            if !hidden {
-                of_set += Vec3::ONE - self.left[index];
-            }
-        }
-        sum + of_set
+        dimmed().zip(hidden(self.wave, &segments)).collect()
     }
 
     /// Whether any pane may be between a surface point and an emitter.

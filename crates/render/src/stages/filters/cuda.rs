@@ -2,11 +2,12 @@
 
 use lightmesh_layout::stages::{Filters, Shadows};
 
+use super::levels;
 use crate::cuda::Runtime;
 use crate::data::wave::Wave;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
-use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, Modules, PerStructure, Work, blocks_for};
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, Modules, PerStructure, Work, blocks_for, sampling};
 use crate::shadow::Aim;
 use crate::shadow::launch::SampleSets;
 
@@ -28,29 +29,40 @@ pub(crate) fn filters<R: Runtime>(
     let passed = cuda.pool().room("light that is let through", wave.rays.len() * lights as usize)?;
     let visibility = DeviceVisibility { passed: Some(passed), ..visibility };
     let kernel = KERNEL.of(panes);
-    let sets = SampleSets::new(aim);
     let of_panes = Wave { scene: panes, ..*wave };
+    let levels: Vec<(Aim, SampleSets)> = levels(aim).into_iter().map(|aim| (aim, SampleSets::new(&aim))).collect();
     // A light without samples has its centre.
-    let slices = u64::from(sets.count.max(1)) * lights;
+    let slices_of = |sets: &SampleSets| u64::from(sets.count.max(1)) * lights;
+    let slices: u64 = levels.iter().map(|(_, sets)| slices_of(sets)).sum();
     let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices.max(1);
-    for slice in 0..slices {
-        let (set, light) = ((slice / lights) as u32, visibility.lights.start as u32 + (slice % lights) as u32);
-        let shadows = sets.record(cuda, &of_panes, &visibility, set)?;
-        let record = Filters {
-            scene: wave.scene.record,
-            shadows: Shadows { first_light: light, end_light: light + 1, ..shadows },
-            triangles: panes.triangles(),
-            normals: panes.normals(),
-            passed: visibility.passed_planes(),
-            middle: u32::from(matches!(aim, Aim::Middle)),
-            spare: 0,
-        };
-        let rays = sets.most(set).max(1);
-        let work = Work::of_rays(wave.rays.blocks(BLOCK_SIDE), &(0..rays), progress(slice + 1) - progress(slice));
-        cuda.in_pieces(wave.job, kernel, work, |piece| {
-            let shadows = Shadows { first: piece.start, count: piece.end - piece.start, ..record.shadows };
-            cuda.launch(kernel, blocks_for(&piece, BLOCK), &Filters { shadows, ..record })
-        })?;
+    let mut done = 0;
+    for (level, (aim, sets)) in (0..).zip(&levels) {
+        for slice in 0..slices_of(sets) {
+            let (set, light) = ((slice / lights) as u32, visibility.lights.start as u32 + (slice % lights) as u32);
+            let mut shadows = sets.record(cuda, &of_panes, &visibility, set)?;
+            if let Aim::Extent(all) = aim {
+                shadows.sampling = sampling(*all);
+            }
+            let record = Filters {
+                scene: wave.scene.record,
+                shadows: Shadows { first_light: light, end_light: light + 1, ..shadows },
+                triangles: panes.triangles(),
+                normals: panes.normals(),
+                passed: visibility.passed_planes(),
+                middle: u32::from(matches!(aim, Aim::Middle)),
+                level,
+                parts: wave.parts,
+                spare: 0,
+            };
+            let rays = sets.most(set).max(1);
+            let pieces = progress(done + 1) - progress(done);
+            done += 1;
+            let work = Work::of_rays(wave.rays.blocks(BLOCK_SIDE), &(0..rays), pieces);
+            cuda.in_pieces(wave.job, kernel, work, |piece| {
+                let shadows = Shadows { first: piece.start, count: piece.end - piece.start, ..record.shadows };
+                cuda.launch(kernel, blocks_for(&piece, BLOCK), &Filters { shadows, ..record })
+            })?;
+        }
     }
     Ok(visibility)
 }

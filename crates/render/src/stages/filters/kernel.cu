@@ -45,39 +45,73 @@ DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 ta
     return left;
 }
 
-// What is lost on the way to a sample, if nothing opaque hides it.
-template <class Structure>
-DEVICE Vec3 lost_of(const Filters &args, const Structure &blockers, const SurfacePoint &point, Vec3 target, unsigned &cast) {
-    const Vec3 none = splat(0.0f);
-    if (!(dot(point.normal, target - point.origin) > 0.0f))
-        return none;
-    const Vec3 left = pass(args, structure_of(args.shadows.scene, blockers), point.origin, target);
-    if (left == splat(1.0f))
-        return none;
-    ++cast;
-    return hidden(blockers, args.shadows.tally, point.origin, target) ? none : splat(1.0f) - left;
+// The level of what a ray sees: how small a share of what it shows reaches the pixel.
+DEVICE unsigned level_of(const Filters &args, unsigned ray) {
+    const Rays &rays = args.shadows.rays;
+    if (rays.depth == 0 || args.middle)
+        return 0;
+    const float shown = max_element(splat(1.0f) - transmittance_at(args, ray_at(rays, ray), load_hit(args.shadows.hits, ray)));
+    const float share = (float)args.parts * max_element(weight_of(rays, ray)) * shown;
+    unsigned level = 0;
+    for (float most = PART_OF_LEVEL; level + 1 < FILTER_LEVELS && share <= most; most *= PART_OF_LEVEL)
+        ++level;
+    return level;
 }
 
-// The sum of that over the samples of a set.
-template <class Structure>
-DEVICE Vec3 lost_of_set(const Filters &args, const Structure &blockers, const SurfacePoint &point, unsigned ray, Shape shape,
-                        unsigned &cast) {
+// Calls `take` with each sample of a set.
+template <class Take>
+DEVICE void each_target(const Filters &args, const SurfacePoint &point, unsigned ray, Shape shape, Take take) {
     const Shadows &shadows = args.shadows;
     const Light &light = shadows.scene.lights[shadows.first_light];
     if (shape == SHAPE_POINT) {
-        const Vec3 middle = light_center(light, point.origin, scene_reach(shadows.scene, point.origin));
-        return lost_of(args, blockers, point, middle, cast);
+        take(light_center(light, point.origin, scene_reach(shadows.scene, point.origin)));
+        return;
     }
     const SampleRows &set = shadows.sets[shape];
     const Sight sight =
         sight_of(shadows.scene, shadows.sampling, shadows.first_light, shape, set.lines, point, ray_key(shadows.rays, ray));
-    Vec3 sum = splat(0.0f);
     for (unsigned row = 0; row < set.rows; ++row)
-        for (unsigned rest = valid_samples(sight, set, row); rest != 0; rest &= rest - 1) {
-            const Vec3 target = point.origin + sample_at(sight, set, row, __ffs(rest) - 1, light.scale);
-            sum = sum + lost_of(args, blockers, point, target, cast);
+        for (unsigned rest = valid_samples(sight, set, row); rest != 0; rest &= rest - 1)
+            take(point.origin + sample_at(sight, set, row, __ffs(rest) - 1, light.scale));
+}
+
+// What is left of a light on the way to the samples of a set.
+struct Followed {
+    // What is lost of those that nothing opaque hides, and what is left of them.
+    Vec3 lost, seen;
+    // What is left of all above the horizon.
+    Vec3 all;
+    float seen_count, all_count;
+};
+
+template <class Structure>
+DEVICE Followed follow(const Filters &args, const Structure &blockers, const SurfacePoint &point, unsigned ray, Shape shape,
+                       unsigned &cast) {
+    const Vec3 none = splat(0.0f);
+    Followed sums{none, none, none, 0.0f, 0.0f};
+    each_target(args, point, ray, shape, [&](Vec3 target) {
+        if (!(dot(point.normal, target - point.origin) > 0.0f))
+            return;
+        const Vec3 left = pass(args, structure_of(args.shadows.scene, blockers), point.origin, target);
+        sums.all = sums.all + left;
+        sums.all_count += 1.0f;
+        if (left != splat(1.0f)) {
+            ++cast;
+            if (hidden(blockers, args.shadows.tally, point.origin, target))
+                return;
         }
-    return sum;
+        sums.lost = sums.lost + (splat(1.0f) - left);
+        sums.seen = sums.seen + left;
+        sums.seen_count += 1.0f;
+    });
+    return sums;
+}
+
+// The mean of what is left, by few samples that are all in one set.
+DEVICE Vec3 mean_left(const Followed &few) {
+    if (few.all_count == 0.0f)
+        return splat(1.0f);
+    return few.seen_count > 0.0f ? few.seen / few.seen_count : few.all / few.all_count;
 }
 
 // Adds what a set of samples loses; after the last one, what is left takes its place.
@@ -101,6 +135,20 @@ DEVICE void add_lost(const Filters &args, Shape shape, unsigned ray, Vec3 lost) 
     share = (passed.x + passed.y + passed.z) / 3.0f;
 }
 
+// What few samples leave of a light takes the place of its share.
+DEVICE void put_left(const Filters &args, unsigned ray, Vec3 left) {
+    const Shadows &shadows = args.shadows;
+    const unsigned long long place = (unsigned long long)shadows.first_light * shadows.rays.count + ray;
+    float &share = shadows.share[place];
+    if (left == splat(1.0f)) {
+        args.passed[place] = splat(share);
+        return;
+    }
+    const Vec3 passed = share * left;
+    args.passed[place] = passed;
+    share = (passed.x + passed.y + passed.z) / 3.0f;
+}
+
 template <class Structure>
 DEVICE void filters(const Filters &args, const Structure &blockers) {
     const Shadows &shadows = args.shadows;
@@ -110,13 +158,20 @@ DEVICE void filters(const Filters &args, const Structure &blockers) {
     const bool has = !(shape == SHAPE_POINT && shadows.set != 0) &&
                      ray_of_thread(shadows.rays, shadows.first + blockIdx.x, threadIdx.x, ray);
     if (has) {
-        Vec3 lost = splat(0.0f);
-        if (load_hit(shadows.hits, ray).triangle != Hit::NONE &&
-            shadows.share[(unsigned long long)shadows.first_light * shadows.rays.count + ray] > 0.0f) {
-            const SurfacePoint point = shadow_point_of(shadows.scene, shadows.rays, shadows.hits, ray, light);
-            lost = lost_of_set(args, blockers, point, ray, shape, cast);
+        const bool sees = load_hit(shadows.hits, ray).triangle != Hit::NONE &&
+                          shadows.share[(unsigned long long)shadows.first_light * shadows.rays.count + ray] > 0.0f;
+        const unsigned level = sees ? level_of(args, ray) : 0;
+        if (level == args.level) {
+            Followed followed{};
+            if (sees) {
+                const SurfacePoint point = shadow_point_of(shadows.scene, shadows.rays, shadows.hits, ray, light);
+                followed = follow(args, blockers, point, ray, shape, cast);
+            }
+            if (level > 0)
+                put_left(args, ray, mean_left(followed));
+            else
+                add_lost(args, shape, ray, followed.lost);
         }
-        add_lost(args, shape, ray, lost);
     }
     count(tally_shard(shadows.tally).shadow_rays, cast);
 }
