@@ -164,10 +164,7 @@ fn same_picture<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure:
 /// What a ground under the scene catches, with alpha.
 fn same_shadows<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure: usize, settings: Settings) {
     let mut scene = subject.scene().clone();
-    // A ground adds triangles, which shapes stored once do not take.
-    if scene.geometry.mesh.instances.is_empty() {
-        scene.add_ground(Up::Y);
-    }
+    scene.add_ground(Up::Y);
     let acceleration = &ACCELERATIONS[structure];
     let scene = PreparedScene::new(&scene, acceleration, &Unobserved).unwrap();
     same_frame(cuda, &scene, settings.with_transparent(true).with_acceleration(acceleration.clone()));
