@@ -175,7 +175,7 @@ pub(crate) struct ImageArgs {
     pub(crate) crop: Option<Crop>,
 
     /// Set the background: one number, r,g,b, "#rrggbb" (sRGB) or transparent, which gives png and exr files an alpha
-    /// channel [default: the scene's, else black; light grey in the studio]
+    /// channel [default: the scene's, else black or the studio's]
     #[arg(long, value_name = "COLOUR|transparent", allow_hyphen_values = true, help_heading = "Image")]
     pub(crate) background: Option<Background>,
 
@@ -183,8 +183,8 @@ pub(crate) struct ImageArgs {
     #[arg(long, help_heading = "Scene")]
     pub(crate) ground: bool,
 
-    /// Light the model in a studio: a ground, a large key light, soft surroundings. That is the default where nothing else gives light
-    /// or a background; here also in interiors, and an error beside other light
+    /// Light the model in a studio, in interiors, too; not beside other light [default: where there is no light and no
+    /// background]
     #[arg(long, conflicts_with_all = ["no_studio", "lights", "sky", "environment", "ambient", "background"], help_heading = "Scene")]
     pub(crate) studio: bool,
 
