@@ -185,7 +185,7 @@ pub(crate) struct ImageArgs {
 
     /// Light the model in a studio, in interiors, too; not beside other light [default: where there is no light and no
     /// background]
-    #[arg(long, conflicts_with_all = ["no_studio", "lights", "sky", "environment", "ambient", "background"], help_heading = "Scene")]
+    #[arg(long, conflicts_with_all = ["no_studio", "lights", "sky", "environment", "ambient", "background", "grid_file"], help_heading = "Scene")]
     pub(crate) studio: bool,
 
     /// Give a model without lights a key light and a fill light only

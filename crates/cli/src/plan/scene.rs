@@ -239,8 +239,11 @@ impl SceneChoices {
 fn lighting(args: &ImageArgs) -> Lighting {
     match args {
         ImageArgs { studio: true, .. } => Lighting::StudioAnywhere,
-        // A studio has a background of its own, which would not be seen where nothing is to be.
-        ImageArgs { no_studio: true, .. } | ImageArgs { background: Some(_), .. } => Lighting::KeyAndFill,
+        // A studio has a background of its own, which would not be seen where nothing is to be, and a ground, of which a saved grid knows
+        // nothing.
+        ImageArgs { no_studio: true, .. }
+        | ImageArgs { background: Some(_), .. }
+        | ImageArgs { grid_file: Some(_), .. } => Lighting::KeyAndFill,
         _ => Lighting::Studio,
     }
 }
