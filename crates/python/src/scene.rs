@@ -27,7 +27,7 @@ const BUILTIN: &str = "builtin:";
 /// Without `lights` (`None`), images show it in a studio, as the command line does, or with `no_studio=True` by a key and a fill light; an
 /// empty list is darkness. `instances`
 /// says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many triangles in all
-/// ("auto"). Small surfaces that emit get lights, `lamps`, as those of files have; in a frame they come after `lights`. What had to be
+/// ("auto"). Surfaces that emit get lights, `lamps`, as those of files have; in a frame they come after `lights`. What had to be
 /// corrected is a `SceneWarning`.
 #[pyclass(module = "lightmesh")]
 #[derive(Clone)]
@@ -35,7 +35,7 @@ pub(crate) struct Scene {
     pub(crate) world: World,
     /// The format of its file, by which it may be known what is up.
     pub(crate) format: Option<SceneFormat>,
-    /// Whether small surfaces that emit have lights, and these, which stay whatever lights are set: the last ones of the world.
+    /// Whether surfaces that emit have lights, and these, which stay whatever lights are set: the last ones of the world.
     makes_lamps: bool,
     lamps: Vec<scene::Light>,
 }
@@ -284,7 +284,7 @@ impl Scene {
         Scene { world, format, makes_lamps: false, lamps: Vec::new() }
     }
 
-    /// Makes lights for small surfaces that emit, as files that are opened have them.
+    /// Makes lights for surfaces that emit, as files that are opened have them.
     fn add_lamps(&mut self) {
         if !self.makes_lamps {
             return;

@@ -29,6 +29,11 @@ impl Bounds {
         Bounds { min: self.min.min(point), max: self.max.max(point) }
     }
 
+    /// The box around this one and another.
+    pub(crate) fn with_box(self, other: Bounds) -> Bounds {
+        self.including(other.min).including(other.max)
+    }
+
     /// The largest absolute value of a coordinate within; 0 if it is empty.
     #[inline]
     pub fn farthest(&self) -> f32 {
@@ -103,6 +108,6 @@ impl Mesh {
         let used = self.own_triangles().flat_map(|triangle| self.triangles[triangle]);
         let own = Bounds::around(used.map(|vertex| self.positions[vertex as usize]));
         let instances = self.instances.list().iter().map(|instance| instance.bounds);
-        instances.fold(own, |all, one| all.including(one.min).including(one.max))
+        instances.fold(own, Bounds::with_box)
     }
 }

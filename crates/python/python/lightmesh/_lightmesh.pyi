@@ -283,7 +283,7 @@ class Scene:
     Without `lights` (`None`), images show it in a studio, as the command line does, or with `no_studio=True` by a key and a fill light; an
     empty list is darkness. `instances`
     says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many triangles in all
-    ("auto"). Small surfaces that emit get lights, `lamps`, as those of files have; in a frame they come after `lights`. What had to be
+    ("auto"). Surfaces that emit get lights, `lamps`, as those of files have; in a frame they come after `lights`. What had to be
     corrected is a `SceneWarning`.
     """
 

@@ -227,26 +227,24 @@ impl Surface {
     /// The light of `light` that arrives from `target`, times the cosine, without a cone or an image of normals.
     #[inline(always)]
     fn arriving_plainly(&self, light: &Light, target: Vec3) -> Vec3 {
-        let to_light = target - self.point.position;
-        let distance = to_light.length();
-        let cosine = self.normal.dot(to_light) / distance;
-        if cosine <= 0.0 {
-            return Vec3::ZERO;
-        }
-        let emitted = light.surface.map_or(1.0, |_| cone(light, to_light / distance));
+        let Some((direction, distance, cosine)) = self.way_to(target) else { return Vec3::ZERO };
+        let emitted = light.surface.map_or(1.0, |_| cone(light, direction));
         (cosine * emitted * falloff(light, distance)) * light.intensity
     }
 
     /// The same if all of it comes from `target`.
     pub(crate) fn arriving_from(&self, light: &Light, target: Vec3) -> Vec3 {
+        let Some((direction, distance, cosine)) = self.way_to(target) else { return Vec3::ZERO };
+        self.softened(direction, cosine) * strength(light, direction, distance)
+    }
+
+    /// The direction, the distance and the cosine of a point above the horizon; `None` for others, also for the surface point itself.
+    #[inline(always)]
+    fn way_to(&self, target: Vec3) -> Option<(Vec3, f32, f32)> {
         let to_light = target - self.point.position;
         let distance = to_light.length();
         let cosine = self.normal.dot(to_light) / distance;
-        if cosine <= 0.0 {
-            return Vec3::ZERO;
-        }
-        let direction = to_light / distance;
-        self.softened(direction, cosine) * strength(light, direction, distance)
+        (cosine > 0.0).then(|| (to_light / distance, distance, cosine))
     }
 
     /// The cosine of light along `direction`, by the image of normals if there is one.

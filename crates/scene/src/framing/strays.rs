@@ -105,8 +105,8 @@ fn without_strays(mesh: &Mesh, bounds: &Bounds, counts: Option<&[bool]>) -> Opti
     // 3. Those that are small, lie outside of what is not, and have hardly any area.
     let largest = clusters.iter().map(|cluster| cluster.bounds.diagonal()).fold(0.0, f32::max);
     let is_small = |cluster: &Cluster| cluster.bounds.diagonal() <= SMALL * largest;
-    let around = |all: Bounds, one: &Cluster| all.including(one.bounds.min).including(one.bounds.max);
-    let rest = clusters.iter().filter(|cluster| !is_small(cluster)).fold(Bounds::EMPTY, around);
+    let large = clusters.iter().filter(|cluster| !is_small(cluster)).map(|cluster| cluster.bounds);
+    let rest = large.fold(Bounds::EMPTY, Bounds::with_box);
     let is_within = |one: &Bounds| one.min.cmpge(rest.min).all() && one.max.cmple(rest.max).all();
     let is_stray = |cluster: &Cluster| is_small(cluster) && !is_within(&cluster.bounds);
     let are_strays: Vec<bool> = clusters.iter().map(is_stray).collect();
