@@ -509,6 +509,8 @@ constants! {
     BOUNCE_FINER: i32 = 2;
     /// The rays of a site that other rays hit form a square with this side.
     BOUNCE_SIDE: u32 = 8;
+    /// What is so many times brighter than the mean of what a fan sees asks the smallest of these at once: around it, light changes fast.
+    BRIGHT: f32 = 8.0;
     /// Where there are more lights, what a ray hits asks about so many of them, chosen by what they may give.
     CHOSEN_LIGHTS: u32 = 4;
     /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's. After so many, a share of

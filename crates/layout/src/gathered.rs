@@ -135,8 +135,9 @@ records! {
         node: u32,
         /// How much of the other light is reflected.
         kd: Vec3,
-        /// 1: no smaller cells are asked.
-        settled: u32,
+        /// By how many levels the largest cell that it may ask is smaller than `level`; more than
+        /// [`BOUNCE_FINER`](crate::constants::BOUNCE_FINER): it asks no more.
+        from: i32,
     }
 
     /// What arrives at a site that rays of others hit.

@@ -26,19 +26,11 @@ DEVICE bool may_answer(const Node &node, const Site &site, int finer) {
     return is_somewhere(site) && (!node.covered || finer == BOUNCE_FINER);
 }
 
-// Whether a ray asks a node, or a smaller one.
-DEVICE bool asks_on(const SeenRay &seen) { return is_open(seen) && !seen.settled; }
+// Whether a ray asks a node in a cell that is smaller by so many levels.
+DEVICE bool asks_on(const SeenRay &seen, int finer) { return is_open(seen) && seen.from <= finer; }
 
 // Asks for the node that a ray sees.
 DEVICE void name_node(const Bounce &args, const SeenRay &seen) { add_name(args.names, name_of_seen(seen, args.finer)); }
-
-// The mean luminance that the rays of a node see.
-DEVICE float brightness(const Fans &fans, unsigned site) {
-    float sum = 0.0f;
-    for (unsigned ray = site * rays_of_fan(fans); ray < (site + 1) * rays_of_fan(fans); ++ray)
-        sum += fans.weights[ray] * luminance(fans.seen[ray].radiance);
-    return sum;
-}
 
 // Whether a ray asks on where something is in the way. Where others see little, what is lit matters: most of what is reflected comes from there.
 DEVICE bool insists(const Bounce &args, unsigned ray) {
@@ -49,7 +41,7 @@ DEVICE bool insists(const Bounce &args, unsigned ray) {
 template <class Structure>
 DEVICE void hide_nodes(const Bounce &args, const Structure &structure) {
     unsigned ray;
-    if (!fan_ray_of_thread(args.fans, ray) || !asks_on(args.fans.seen[ray]))
+    if (!fan_ray_of_thread(args.fans, ray) || !asks_on(args.fans.seen[ray], args.finer))
         return;
     SeenRay &seen = args.fans.seen[ray];
     const unsigned node = number_of(args.names, name_of_seen(seen, args.finer).key);
@@ -57,7 +49,7 @@ DEVICE void hide_nodes(const Bounce &args, const Structure &structure) {
     if (may_answer(args.nodes[node], site, args.finer) && !occluded(structure, args.fans.tally, site_segment(place_of_seen(seen), site)))
         seen.node = node;
     else if (!insists(args, ray) && !(is_somewhere(site) && args.nodes[node].covered))
-        seen.settled = 1;
+        seen.from = BOUNCE_FINER + 1;
 }
 
 // Lists a node, once, if less is known of it, or asked for, than is asked now.

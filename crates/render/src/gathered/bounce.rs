@@ -22,7 +22,7 @@ use lightmesh_layout::constants::{BOUNCE_FINER, BOUNCE_SIDE, ORDERS as MOST_ORDE
 use rayon::prelude::*;
 
 use super::cells::{Asked, CellHasher, KIND_BITS, NAME_BITS, Site, nearest_of_kind};
-use super::rays::{Fan, Seen, Spot};
+use super::rays::{Fan, Seen, Spot, brightness};
 use super::scene::Scene;
 use crate::shading::luminance;
 use crate::stages::primary_rays::cpu::batch;
@@ -45,10 +45,20 @@ impl Spot {
     }
 
     /// The same in a cell of half the size, if there may be one.
-    fn finer(mut self) -> Option<Spot> {
-        self.place.level -= 1;
-        self.finer += 1;
-        (self.finer <= BOUNCE_FINER).then_some(self)
+    fn finer(self) -> Option<Spot> {
+        (self.finer < BOUNCE_FINER).then(|| self.smaller(1))
+    }
+
+    /// The same in a cell that is smaller by so many levels.
+    fn smaller(mut self, levels: i32) -> Spot {
+        self.place.level -= levels;
+        self.finer += levels;
+        self
+    }
+
+    /// The same in the smallest cell that may be asked.
+    pub(super) fn finest(self) -> Spot {
+        self.smaller(BOUNCE_FINER - self.finer)
     }
 }
 
@@ -253,11 +263,8 @@ impl Bounce {
             let of = |&node: &u32| (&self.nodes[node as usize].site, f32::INFINITY);
             let cast = scene.cast(new.iter().map(of), FAN);
             let seen = scene.seen(&cast);
-            let brightness: Vec<f32> = seen
-                .par_chunks_exact(FAN.len())
-                .zip(cast.weights.par_chunks_exact(FAN.len()))
-                .map(brightness)
-                .collect();
+            let fans = seen.par_chunks_exact(FAN.len()).zip(cast.weights.par_chunks_exact(FAN.len()));
+            let brightness: Vec<f32> = fans.map(|(seen, weights)| brightness(seen, weights)).collect();
             // Where others see little, what is lit matters: most of what is reflected comes from there.
             let is_bright = |ray: u32| luminance(seen[ray as usize].radiance) > brightness[ray as usize / FAN.len()];
             let numbers = self.resolve(scene, &seen, is_bright);
@@ -281,11 +288,6 @@ impl Bounce {
         let lit: Vec3 = seen.iter().map(|&(number, weight)| weight * value(number)).sum();
         first + lit + *hidden * mean(seen.iter().map(|&(number, _)| value(number)))
     }
-}
-
-/// The mean luminance that the rays of a node see.
-fn brightness((seen, weights): (&[Seen], &[f32])) -> f32 {
-    seen.iter().zip(weights).fold(0.0, |sum, (seen, weight)| sum + weight * luminance(seen.radiance))
 }
 
 /// What arrives at a node with the last reflection alone, and what its rays see.

@@ -84,17 +84,17 @@ KERNEL(level_fans, Fans, BLOCK, 4) {
         args.levels[site] = asked_level(args, site);
 }
 
-// ---- bounce.cuh ----
-
 KERNEL(brighten_fans, Fans, BLOCK, 4) {
     unsigned site;
     if (thread_has_work(args.count, site))
-        args.brightness[site] = brightness(args, site);
+        brighten(args, site);
 }
+
+// ---- bounce.cuh ----
 
 KERNEL(name_nodes, Bounce, BLOCK, 4) {
     unsigned ray;
-    if (fan_ray_of_thread(args.fans, ray) && asks_on(args.fans.seen[ray]))
+    if (fan_ray_of_thread(args.fans, ray) && asks_on(args.fans.seen[ray], args.finer))
         name_node(args, args.fans.seen[ray]);
 }
 

@@ -190,3 +190,15 @@ DEVICE void see(const Fans &fans, const Structure &structure) {
         fans.seen[ray] = seen_by(fans, structure, ray, cast);
     count(tally_shard(fans.tally).shadow_rays, cast);
 }
+
+// Finds the mean luminance that the rays of a site see. Rays that see much more ask the smallest cells at once.
+DEVICE void brighten(const Fans &fans, unsigned site) {
+    const unsigned first = site * rays_of_fan(fans), end = first + rays_of_fan(fans);
+    float mean = 0.0f;
+    for (unsigned ray = first; ray < end; ++ray)
+        mean += fans.weights[ray] * luminance(fans.seen[ray].radiance);
+    fans.brightness[site] = mean;
+    for (unsigned ray = first; ray < end; ++ray)
+        if (luminance(fans.seen[ray].radiance) > BRIGHT * mean)
+            fans.seen[ray].from = BOUNCE_FINER;
+}

@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
-use lightmesh_layout::constants::{BOUNCE_SIZE, CHOSEN_LIGHTS, LAST_DIGIT, SKY_CONE};
+use lightmesh_layout::constants::{BOUNCE_SIZE, BRIGHT, CHOSEN_LIGHTS, LAST_DIGIT, SKY_CONE};
 use lightmesh_scene::{Light, LightKind};
 use rayon::prelude::*;
 
@@ -20,7 +20,7 @@ use crate::footprint::Cone;
 use crate::job::Sampling;
 use crate::sampling::{light_center, random_bits};
 use crate::shading::environment::surroundings;
-use crate::shading::{LightTargets, Surface, falloff, material_of};
+use crate::shading::{LightTargets, Surface, falloff, luminance, material_of};
 use crate::shadow::{Aim, Targets, hidden, size};
 use crate::stages::primary_rays::cpu::{batch, closest_hits};
 use crate::surface::{SurfacePoint, long_segment};
@@ -158,6 +158,8 @@ impl Scene<'_> {
                 segments.add(&wave, seen);
             });
         });
+        let fans = seen.par_chunks_exact_mut(cast.fan.len()).zip(cast.weights.par_chunks_exact(cast.fan.len()));
+        fans.for_each(|(seen, weights)| brighten(seen, weights));
         seen
     }
 }
@@ -208,6 +210,19 @@ fn seen_by(wave: &HostWave, cast: &Cast, lights: &Lights, [ray, place]: [usize; 
     let level = level_of(BOUNCE_SIZE * hit.t).0.max(cast.level(ray));
     let spot = Spot { place: Place::new(point, level), finer: 0, kind: kind_of(point.normal, is_front) };
     Seen { radiance, kd, spot: Some(spot) }
+}
+
+/// The mean luminance that the rays of a site see.
+pub(super) fn brightness(seen: &[Seen], weights: &[f32]) -> f32 {
+    seen.iter().zip(weights).fold(0.0, |mean, (seen, weight)| mean + weight * luminance(seen.radiance))
+}
+
+/// Rays of a site that see much more than the mean ask the smallest cells at once.
+fn brighten(seen: &mut [Seen], weights: &[f32]) {
+    let mean = brightness(seen, weights);
+    for seen in seen.iter_mut().filter(|seen| luminance(seen.radiance) > BRIGHT * mean) {
+        seen.spot = seen.spot.map(Spot::finest);
+    }
 }
 
 /// What rays need to know of lights.

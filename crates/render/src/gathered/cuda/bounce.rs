@@ -144,7 +144,6 @@ impl<R: Runtime> DeviceBounce<R> {
             let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
             let own = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, FAN)?;
             own.see(device)?;
-            device.threads("brighten_fans", count, &own.record)?;
             self.resolve(device, &own, false)?;
             let record = Bounce { first: first as u32, linked: (self.linked + first) as u32, ..self.record(&own) };
             device.threads("link_nodes", count, &record)?;

@@ -108,6 +108,7 @@ impl<R: Runtime> DeviceFans<R> {
     /// Finds what the rays see, but for the light that reaches what they hit from no light directly.
     pub(super) fn see(&self, device: &Device<R>) -> Result<(), RenderError> {
         device.threads("level_fans", self.sites, &self.record)?;
-        device.tracing(SEE, self.rays, &self.record)
+        device.tracing(SEE, self.rays, &self.record)?;
+        device.threads("brighten_fans", self.sites, &self.record)
     }
 }
