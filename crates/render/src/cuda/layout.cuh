@@ -395,6 +395,8 @@
 #define BOUNCE_FINER 2
 // The rays of a site that other rays hit form a square with this side.
 #define BOUNCE_SIDE 8u
+// What is so many times brighter than the mean of what a fan sees asks the smallest of these at once: around it, light changes fast.
+#define BRIGHT 0x1p3f
 // Where there are more lights, what a ray hits asks about so many of them, chosen by what they may give.
 #define CHOSEN_LIGHTS 4u
 // How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's. After so many, a share of
@@ -1298,7 +1300,7 @@ struct alignas(4) SeenRay {
     Vec3 radiance;
     unsigned node;
     Vec3 kd;
-    unsigned settled;
+    int from;
 };
 static_assert(sizeof(SeenRay) == 64, "size of SeenRay");
 static_assert(PLACE_OF(SeenRay, position) == 0, "place of SeenRay::position");
@@ -1308,7 +1310,7 @@ static_assert(PLACE_OF(SeenRay, kind) == 28, "place of SeenRay::kind");
 static_assert(PLACE_OF(SeenRay, radiance) == 32, "place of SeenRay::radiance");
 static_assert(PLACE_OF(SeenRay, node) == 44, "place of SeenRay::node");
 static_assert(PLACE_OF(SeenRay, kd) == 48, "place of SeenRay::kd");
-static_assert(PLACE_OF(SeenRay, settled) == 60, "place of SeenRay::settled");
+static_assert(PLACE_OF(SeenRay, from) == 60, "place of SeenRay::from");
 
 struct alignas(4) Node {
     Vec3 values[12];
