@@ -484,6 +484,10 @@ constants! {
     LEAST_SPREAD: f32 = 0.02;
     /// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
     SITE_RAISED: f32 = 0.15;
+    /// They rise no farther than this share of the way to what is above.
+    SITE_STEP: f32 = 0.5;
+    /// They rise no more slowly than by this cosine, unless something is in the way.
+    LEAST_RISE: f32 = 0.3;
     /// Bins of directions along each side of the octahedron's square.
     BINS_PER_SIDE: u32 = 8;
     /// What tilts a surface changes light by the slope of the cosine, which has no bound at the horizon: smaller cosines count as this.

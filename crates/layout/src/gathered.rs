@@ -79,6 +79,8 @@ records! {
         normal: Vec3,
         /// The share of the answer that counts; 0 if nothing is asked.
         share: f32,
+        /// Where rays begin.
+        origin: Vec3,
     }
 
     /// A site that a place takes light from.

@@ -370,6 +370,10 @@
 #define LEAST_SPREAD 0x1.47ae14p-6f
 // Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
 #define SITE_RAISED 0x1.333334p-3f
+// They rise no farther than this share of the way to what is above.
+#define SITE_STEP 0x1p-1f
+// They rise no more slowly than by this cosine, unless something is in the way.
+#define LEAST_RISE 0x1.333334p-2f
 // Bins of directions along each side of the octahedron's square.
 #define BINS_PER_SIDE 8u
 // What tilts a surface changes light by the slope of the cosine, which has no bound at the horizon: smaller cosines count as this.
@@ -1247,12 +1251,14 @@ struct alignas(4) LightPlace {
     int level;
     Vec3 normal;
     float share;
+    Vec3 origin;
 };
-static_assert(sizeof(LightPlace) == 32, "size of LightPlace");
+static_assert(sizeof(LightPlace) == 44, "size of LightPlace");
 static_assert(PLACE_OF(LightPlace, position) == 0, "place of LightPlace::position");
 static_assert(PLACE_OF(LightPlace, level) == 12, "place of LightPlace::level");
 static_assert(PLACE_OF(LightPlace, normal) == 16, "place of LightPlace::normal");
 static_assert(PLACE_OF(LightPlace, share) == 28, "place of LightPlace::share");
+static_assert(PLACE_OF(LightPlace, origin) == 32, "place of LightPlace::origin");
 
 struct alignas(4) Link {
     unsigned site;

@@ -8,8 +8,6 @@
 
 DEVICE bool asks_node(const SeenRay &seen) { return seen.kind != SURFACE_KINDS; }
 
-DEVICE LightPlace place_of_seen(const SeenRay &seen) { return LightPlace{seen.position, seen.level, seen.normal, 1.0f}; }
-
 // Whether a ray asks and has no answer yet.
 DEVICE bool is_open(const SeenRay &seen) { return asks_node(seen) && seen.node == NO_NUMBER; }
 
@@ -46,9 +44,12 @@ DEVICE void hide_nodes(const Bounce &args, const Structure &structure) {
     SeenRay &seen = args.fans.seen[ray];
     const unsigned node = number_of(args.names, name_of_seen(seen, args.finer).key);
     const Site &site = args.sites[node];
-    if (may_answer(args.nodes[node], site, args.finer) && !occluded(structure, args.fans.tally, site_segment(place_of_seen(seen), site)))
+    const Open open = {seen.position, -ray_at(args.fans.rays, ray).direction, load_hit(args.fans.hits, ray).t};
+    const bool covered = args.nodes[node].covered;
+    if (may_answer(args.nodes[node], site, args.finer) &&
+        !occluded(structure, args.fans.tally, site_segment(seen.position, seen.normal, open, site, covered)))
         seen.node = node;
-    else if (!insists(args, ray) && !(is_somewhere(site) && args.nodes[node].covered))
+    else if (!insists(args, ray) && !(is_somewhere(site) && covered))
         seen.from = BOUNCE_FINER + 1;
 }
 

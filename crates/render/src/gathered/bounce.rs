@@ -184,7 +184,7 @@ impl Bounce {
             let node = number.map(|number| &self.nodes[number as usize]).filter(|node| node.may_answer(spot.finer));
             match node {
                 Some(node) => {
-                    segments.push(spot.place.segment(&node.site.point));
+                    segments.push(spot.place.segment(&node.site.point, node.covered));
                     owners.push(index);
                 }
                 None => *number = None,

@@ -36,7 +36,7 @@ KERNEL(take_sites, TakeSites, BLOCK, 4) {
     if (args.owners != nullptr)
         args.owners[number] = owner;
     if (args.places != nullptr)
-        args.places[number] = LightPlace{site.position, site.level, site.normal, 1.0f};
+        args.places[number] = LightPlace{site.position, site.level, site.normal, 1.0f, site.origin};
 }
 
 // ---- lookup.cuh ----

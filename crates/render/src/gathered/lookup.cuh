@@ -23,10 +23,25 @@ DEVICE float site_weight(const LightPlace &place, float size, Vec3 position, Vec
     return near * near * cosine * cosine * flat * flat;
 }
 
-// The segment to a site.
-DEVICE Ray site_segment(const LightPlace &place, const Site &site) {
-    const float raised = SITE_RAISED * length(site.position - place.position);
-    return long_segment(place.position + raised * place.normal, site.origin + raised * site.normal);
+// How ways to sites leave a place: nothing is in the way in a direction, up to some reach.
+struct Open {
+    Vec3 from, direction;
+    float reach;
+};
+
+// The segment to a site. Both ends are raised, as far as nothing is in the way: not through a thin board.
+DEVICE Ray site_segment(Vec3 position, Vec3 normal, const Open &open, const Site &site, bool covered) {
+    const float raised = SITE_RAISED * length(site.position - position);
+    const float step = fminf(raised / larger(dot(open.direction, normal), LEAST_RISE), SITE_STEP * open.reach);
+    const Vec3 end = covered ? site.origin : site.origin + raised * site.normal;
+    return long_segment(open.from + step * open.direction, end);
+}
+
+// How far it is to whatever is above a place, as high as ways to sites may begin.
+template <class Structure>
+DEVICE float reach_above(const Lookup &args, const Structure &structure, const LightPlace &place) {
+    const float t_max = SITE_RAISED * SITE_RADIUS * size_of_level(place.level) / SITE_STEP;
+    return closest_hit(structure, args.tally, Ray{place.origin, place.normal, t_max}).t;
 }
 
 // The moments of sites around a place, from which their weights are balanced.
@@ -155,7 +170,7 @@ DEVICE unsigned find_links(const Lookup &args, bool has, const LightPlace &place
             const Vec3 position = args.table.sites[site].position, normal = args.table.sites[site].normal;
             for (unsigned next = places; next != 0; next &= next - 1) {
                 const unsigned asking = __ffs(next) - 1;
-                const LightPlace asked = {warp_broadcast(place.position, asking), around.level, warp_broadcast(place.normal, asking), 1.0f};
+                const LightPlace asked = {warp_broadcast(place.position, asking), around.level, warp_broadcast(place.normal, asking), 1.0f, {}};
                 const float weight = is_site ? site_weight(asked, size, position, normal) : 0.0f;
                 const unsigned found = __ballot_sync(ALL_LANES, weight > 0.0f), start = __shfl_sync(ALL_LANES, end, asking);
                 if (links != nullptr && weight > 0.0f)
@@ -185,8 +200,9 @@ DEVICE void balance(const Lookup &args, const LightPlace &place, Link *links, un
 
 // Takes its weight from a link if its place does not see the site.
 template <class Structure>
-DEVICE void hide_link(const Lookup &args, const Structure &structure, unsigned place, Link &link) {
-    if (occluded(structure, args.tally, site_segment(args.places[place], args.table.sites[link.site])))
+DEVICE void hide_link(const Lookup &args, const Structure &structure, const LightPlace &place, float reach, Link &link) {
+    const Open open = {place.origin, place.normal, reach};
+    if (occluded(structure, args.tally, site_segment(place.position, place.normal, open, args.table.sites[link.site], false)))
         link.weight = 0.0f;
 }
 
@@ -197,10 +213,12 @@ DEVICE void settle_links(const Lookup &args, const Structure &structure) {
     const unsigned index = blockIdx.x * BLOCK + threadIdx.x, lane = lane_of_thread();
     const unsigned begin = args.offsets[min(index, args.count)], end = args.offsets[min(index + 1, args.count)];
     const unsigned last = __shfl_sync(ALL_LANES, end, WARP - 1);
+    const float own = begin < end ? reach_above(args, structure, args.places[index]) : INFINITE;
     for (unsigned from = __shfl_sync(ALL_LANES, begin, 0); from < last; from += WARP) {
-        const unsigned place = index - lane + warp_owner(end, from + lane);
+        const unsigned owner = warp_owner(end, from + lane);
+        const float reach = __shfl_sync(ALL_LANES, own, owner);
         if (from + lane < last)
-            hide_link(args, structure, place, args.links[from + lane]);
+            hide_link(args, structure, args.places[index - lane + owner], reach, args.links[from + lane]);
     }
     __syncwarp();
     if (index < args.count)

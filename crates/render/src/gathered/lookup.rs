@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use glam::{IVec3, Vec2, Vec3};
 use lightmesh_layout::constants::{
-    CELLS_AROUND, LEAST_SPREAD, SITE_COSINE, SITE_MARGIN, SITE_RADIUS, SITE_RAISED, SITE_THICKNESS,
+    CELLS_AROUND, LEAST_RISE, LEAST_SPREAD, SITE_COSINE, SITE_MARGIN, SITE_RADIUS, SITE_RAISED, SITE_STEP,
+    SITE_THICKNESS,
 };
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
@@ -12,7 +13,7 @@ use rayon::prelude::*;
 use super::cells::{Asked, CellKey, Cells, cell_at, corner_of, key_of, size_of_level};
 use super::directions::basis;
 use super::scene::Scene;
-use crate::accel::Ray;
+use crate::accel::{Hit, Ray};
 use crate::surface::{SurfacePoint, long_segment};
 
 /// Places per task.
@@ -24,11 +25,36 @@ pub(super) struct Place {
     pub(super) position: Vec3,
     pub(super) normal: Vec3,
     pub(super) level: i32,
+    open: Open,
+}
+
+/// How ways to sites leave a place.
+#[derive(Clone, Copy, Debug)]
+struct Open {
+    from: Vec3,
+    /// A direction in which nothing is in the way,
+    direction: Vec3,
+    /// up to here.
+    reach: f32,
 }
 
 impl Place {
+    /// What is above it is found by [`Links::settle`].
     pub(super) fn new(point: &SurfacePoint, level: i32) -> Place {
-        Place { position: point.position, normal: point.normal, level }
+        let open = Open { from: point.origin, direction: point.normal, reach: f32::INFINITY };
+        Place { position: point.position, normal: point.normal, level, open }
+    }
+
+    /// A place that a ray of this direction hits at this distance: nothing is in its way.
+    pub(super) fn seen(point: &SurfacePoint, level: i32, direction: Vec3, distance: f32) -> Place {
+        let open = Open { from: point.position, direction: -direction, reach: distance };
+        Place { position: point.position, normal: point.normal, level, open }
+    }
+
+    /// A ray to whatever is above it, as high as ways to sites may begin.
+    fn above(&self) -> Ray {
+        let t_max = SITE_RAISED * SITE_RADIUS * size_of_level(self.level) / SITE_STEP;
+        Ray { origin: self.open.from, direction: self.normal, t_max }
     }
 
     /// The cell in which it lies.
@@ -50,10 +76,13 @@ impl Place {
         near * near * cosine * cosine * flat * flat
     }
 
-    /// The segment to a site.
-    pub(super) fn segment(&self, site: &SurfacePoint) -> Ray {
+    /// The segment to a site. Both ends are raised, as far as nothing is in the way: not through a thin board.
+    pub(super) fn segment(&self, site: &SurfacePoint, covered: bool) -> Ray {
         let raised = SITE_RAISED * (site.position - self.position).length();
-        long_segment(self.position + raised * self.normal, site.origin + raised * site.normal)
+        let Open { from, direction, reach } = self.open;
+        let step = (raised / direction.dot(self.normal).max(LEAST_RISE)).min(SITE_STEP * reach);
+        let end = if covered { site.origin } else { site.origin + raised * site.normal };
+        long_segment(from + step * direction, end)
     }
 }
 
@@ -109,9 +138,13 @@ impl Links {
         self.batches.par_iter_mut().zip(places.par_chunks(BATCH)).for_each(|(batch, places)| {
             let mut segments = Vec::with_capacity(batch.links.len());
             let mut owners = Vec::with_capacity(batch.links.len());
-            for (place, range) in places.iter().zip(&batch.ranges) {
+            let above: Vec<Ray> = places.iter().map(Place::above).collect();
+            let mut covers = vec![Hit::MISS; places.len()];
+            scene.scene.geometry.accelerator.closest_hits(&above, &mut covers);
+            for ((place, cover), range) in places.iter().zip(&covers).zip(&batch.ranges) {
+                let place = Place { open: Open { reach: cover.t, ..place.open }, ..*place };
                 for link in range.start as usize..range.end as usize {
-                    segments.push(place.segment(&cells.sites[batch.links[link].0 as usize].point));
+                    segments.push(place.segment(&cells.sites[batch.links[link].0 as usize].point, false));
                     owners.push(link);
                 }
             }

@@ -14,8 +14,8 @@ DEVICE void ask_at(const GatherPoints &args, unsigned index) {
         float rest;
         const int level = level_of_width(args.pixels * (args.spacing[0] + args.spacing[1] * length(point.position - args.eye)), rest);
         const float next = larger((rest - BLEND_FROM) / (2.0f - BLEND_FROM), 0.0f);
-        places[0] = LightPlace{point.position, max(level, args.least_level), point.normal, 1.0f - next};
-        places[1] = LightPlace{point.position, max(level + 1, args.least_level), point.normal, next};
+        places[0] = LightPlace{point.position, max(level, args.least_level), point.normal, 1.0f - next, point.origin};
+        places[1] = LightPlace{point.position, max(level + 1, args.least_level), point.normal, next, point.origin};
     }
     args.places[2 * index] = places[0];
     args.places[2 * index + 1] = places[1];
@@ -80,7 +80,7 @@ DEVICE void site_of_alone(const GatherPoints &args, unsigned index) {
     const unsigned long long seed = args.all_alone ? 0 : x ^ y << 21 ^ z << 42;
     const int level = args.places[place].level + COARSER;
     args.sites[index] = Site{point.position, level, point.origin, point.normal, seed};
-    args.asked[index] = LightPlace{point.position, level, point.normal, 1.0f};
+    args.asked[index] = LightPlace{point.position, level, point.normal, 1.0f, point.origin};
 }
 
 // What it receives.

@@ -208,7 +208,8 @@ fn seen_by(wave: &HostWave, cast: &Cast, lights: &Lights, [ray, place]: [usize; 
     let point = &surface.point;
     let is_front = outward(&wave.scene.geometry.triangles.at(hit.triangle)).dot(direction) < 0.0;
     let level = level_of(BOUNCE_SIZE * hit.t).0.max(cast.level(ray));
-    let spot = Spot { place: Place::new(point, level), finer: 0, kind: kind_of(point.normal, is_front) };
+    let spot =
+        Spot { place: Place::seen(point, level, direction, hit.t), finer: 0, kind: kind_of(point.normal, is_front) };
     Seen { radiance, kd, spot: Some(spot) }
 }
 

@@ -152,6 +152,26 @@ fn no_light_leaks_into_a_dark_room() {
 }
 
 #[test]
+fn rooms_of_thin_boards_that_abut_are_dark() {
+    // Ways between surface points begin above these: of those inside a board not beyond it.
+    let [w, h, d, t] = [2.1, 2.7, 3.3, 0.02];
+    let boards = [
+        ([-w - t, -t, -d - t], [w + t, 0.0, d + t]),
+        ([-w - t, h, -d - t], [w + t, h + t, d + t]),
+        ([-w - t, 0.0, -d - t], [-w, h, d + t]),
+        ([w, 0.0, -d - t], [w + t, h, d + t]),
+        ([-w, 0.0, -d - t], [w, h, -d]),
+        ([-w, 0.0, d], [w, h, d + t]),
+    ];
+    let draft = SceneDraft::new().painted(Material::matt(Vec3::splat(0.7)));
+    let draft = boards.into_iter().fold(draft, |draft, (min, max)| draft.cuboid(min, max));
+    let scene = under(&uniform(Vec3::ONE), draft.camera([1.6, 1.5, 2.8], [-1.0, 1.2, -2.0]));
+    let frame = render(&scene, &settings([160, 120]));
+    let lit = frame.color().iter().filter(|color| **color != [0.0; 3]).count();
+    assert_eq!(lit, 0);
+}
+
+#[test]
 fn what_lies_on_a_floor_gets_nothing_from_below() {
     // A sheet, thinner than cells are wide: in it and below it is darkness.
     for thickness in [0.001, 0.004, 0.016] {
