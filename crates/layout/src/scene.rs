@@ -35,7 +35,7 @@ records! {
         scale: f32,
         /// 1: it stands for an emissive surface.
         surface: u32,
-        /// 1: mirror rays see it.
+        /// How it is seen, bits of [`Light`]'s constants.
         seen: u32,
     }
 
@@ -256,6 +256,10 @@ records! {
         far: f32,
         /// Number of these runs.
         object_runs: u32,
+        /// 1: rays see lights as surfaces.
+        seen_lights: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// How area lights are sampled.

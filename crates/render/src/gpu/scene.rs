@@ -23,8 +23,9 @@ use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
 use crate::sampling::disk_radius;
 use crate::settings::Acceleration;
 use crate::shading::ambient::AmbientLight;
+use crate::shading::seen_lights::SeenLights;
 use crate::shading::tint::is_tinted;
-use crate::shading::{LightTargets, is_seen};
+use crate::shading::{LightTargets, seen_as};
 use crate::stage::Stage;
 use crate::sync::locked;
 
@@ -343,15 +344,14 @@ impl<R: Runtime> Upload<'_, R> {
     /// The record of a scene with these lights.
     fn lights(&mut self, scene: &PreparedScene, geometry: Scene) -> Result<Scene, RenderError> {
         let lights = &scene.scene.lights;
-        let records: Vec<Light> = lights
-            .iter()
-            .map(|it| Light { seen: u32::from(is_seen(lights, it)), ..light(&scene.geometry, it) })
-            .collect();
+        let records: Vec<Light> =
+            lights.iter().map(|it| Light { seen: seen_as(lights, it), ..light(&scene.geometry, it) }).collect();
         let targets = LightTargets::new(lights).flat();
         Ok(Scene {
             lights: self.array("lights", &records)?,
             light_targets: self.array::<Vec3>("points on lights", bytemuck::cast_slice(&targets))?,
             light_count: records.len() as u32,
+            seen_lights: u32::from(!SeenLights::new(lights).is_empty()),
             ambient: vec3(AmbientLight::of(scene).mean),
             background: vec3(lights.background.unwrap_or_default()),
             ..geometry
