@@ -45,7 +45,7 @@ impl Environment {
         }
         let texels = values.chunks_exact(channels).map(|texel| [texel[0], texel[1], texel[2]]).collect();
         let environment = scene::Environment::new(name, size, texels, axis(up)?);
-        let environment = if find_sun { environment.find_sun() } else { environment };
+        let environment = if find_sun { environment.find_sun().find_lights() } else { environment };
         Ok(Environment::of(environment, rotation, strength))
     }
 

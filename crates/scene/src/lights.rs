@@ -55,9 +55,9 @@ impl Lights {
     }
 
     /// The light of a sky or a panorama in addition to all others.
-    pub fn add(&mut self, Surroundings { environment, sun }: Surroundings) {
+    pub fn add(&mut self, Surroundings { environment, sun, discs }: Surroundings) {
         self.studio = false;
-        self.list.splice(0..0, sun);
+        self.list.splice(0..0, sun.into_iter().chain(discs));
         self.environment = Some(environment.into());
     }
 

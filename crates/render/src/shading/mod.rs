@@ -391,9 +391,13 @@ struct Glint {
 /// How rays see a light, bits of [`scene::Light`]'s constants: as an emissive surface, or the sun of what surrounds the scene, or as a surface that is
 /// none of the scene's. What a studio's key light is in mirrors, its panorama shows.
 pub(crate) fn seen_as(lights: &Lights, light: &Light) -> u32 {
-    let sun = lights.environment.as_ref().and_then(|environment| environment.sun());
-    let is_sun = matches!((&light.kind, sun), (LightKind::Directional { direction, .. }, Some(sun))
-        if direction.dot(sun.direction) < SAME_SUN);
+    let is_sun = match (&light.kind, &lights.environment) {
+        (LightKind::Directional { direction, .. }, Some(environment)) => {
+            let mut suns = environment.sun().into_iter().chain(environment.discs());
+            suns.any(|sun| direction.dot(sun.direction) < SAME_SUN)
+        }
+        _ => false,
+    };
     if light.lamp || is_sun {
         scene::Light::SEEN
     } else if light.has_size() && light.intensity != Vec3::ZERO && !lights.studio {

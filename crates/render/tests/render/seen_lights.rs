@@ -98,10 +98,12 @@ fn every_light_with_an_area_is_seen() {
         let even = light.with_falloff(Falloff::None);
         assert_near(seen(&lit(floor(), [even])), PI * square * expected, name);
     }
-    // A spot whose cone points elsewhere, and points, which have no area.
+    // A spot whose cone points elsewhere.
     let aside = Light::spot(PLACE, Vec3::X, 0.1, 0.2).unwrap().with_radius(0.5).with_intensity(INTENSITY);
-    let point = Light::point(PLACE).with_spread(0.5);
-    assert_eq!(seen(&lit(floor(), [aside, point])), Vec3::ZERO);
+    assert_eq!(seen(&lit(floor(), [aside])), Vec3::ZERO);
+    // Points have no area, but a highlight.
+    let point = Light::point(PLACE).with_spread(0.5).with_intensity(INTENSITY);
+    assert_near(seen(&lit(floor(), [point])), KR * INTENSITY, "point");
 }
 
 #[test]
@@ -190,8 +192,8 @@ fn small_lights_are_as_bright_as_large_ones() {
             let frame = render(&scene, &Settings::default().with_size([side; 2]));
             frame.color().iter().map(|color| Vec3::from_array(*color)).sum::<Vec3>() / (side * side) as f32
         };
-        let [few, many] = [mean(9), mean(256)];
-        assert!(many.x > 0.0 && (few / many - 1.0).abs().max_element() < 0.05, "{light:?}: {few}, {many}");
+        let [few, many] = [mean(15), mean(256)];
+        assert!(many.x > 0.0 && (few / many - 1.0).abs().max_element() < 0.1, "{light:?}: {few}, {many}");
     }
 }
 
