@@ -33,14 +33,24 @@ struct LightsInFront {
 // How wide the ray is after a distance.
 DEVICE float beam_width(const Beam &beam, float distance) { return fabsf(beam.cone.width + beam.cone.spread * distance) * beam.times; }
 
-// Whether the ray meets a plane before a surface, at which distance, and the cosine between them.
-DEVICE bool meets(const Beam &beam, const Light &light, Vec3 normal, float &distance, float &cosine) {
-    // 1.
+// Where the ray meets a plane.
+struct Met {
+    // Whether that is before a surface, and on the side that shines.
+    bool is_met;
+    // From the light's centre.
+    Vec3 place;
+    float distance, cosine;
+};
+
+DEVICE Met meets(const Beam &beam, const Light &light, Vec3 normal) {
+    // 1. Along the plane that is anywhere, but the light is not.
+    const Vec3 way = light.position - beam.origin;
     const float toward = dot(normal, beam.direction);
-    distance = dot(normal, light.position - beam.origin) / toward;
-    cosine = fabsf(toward);
-    const bool is_met = distance > 0.0f && distance < INFINITE && distance <= beam.end * SAME_DISTANCE;
-    return is_met && (!light.surface || dot(light.direction, beam.direction) < 0.0f);
+    const float on_plane = dot(normal, way) / toward;
+    const float distance = fminf(on_plane, dot(way, beam.direction) + light.size);
+    const bool is_met = on_plane > 0.0f && on_plane < INFINITE && distance > 0.0f && distance <= beam.end * SAME_DISTANCE;
+    const bool shines = !light.surface || dot(light.direction, beam.direction) < 0.0f;
+    return Met{is_met && shines, on_plane * beam.direction - way, distance, fabsf(toward)};
 }
 
 // The radiance of a flat light.
@@ -85,26 +95,24 @@ DEVICE float within_half(const Beam &beam, Vec3 place, Vec3 half, float width, f
 DEVICE Seen sees_rectangle(const Beam &beam, const Light &light) {
     const Vec3 across = cross(light.half_u, light.half_v);
     const float quarter = length(across);
-    float distance, cosine;
-    if (!meets(beam, light, across / quarter, distance, cosine))
+    const Met met = meets(beam, light, across / quarter);
+    if (!met.is_met)
         return Seen{};
-    const Vec3 place = beam.origin + distance * beam.direction - light.position;
     // 2.
-    const float width = beam_width(beam, distance), least = larger(cosine, LEAST_SEEN_COSINE);
-    const float share = within_half(beam, place, light.half_u, width, least) * within_half(beam, place, light.half_v, width, least);
-    return Seen{distance, share, shining(light, distance, cosine, 4.0f * quarter)};
+    const float width = beam_width(beam, met.distance), least = larger(met.cosine, LEAST_SEEN_COSINE);
+    const float share = within_half(beam, met.place, light.half_u, width, least) * within_half(beam, met.place, light.half_v, width, least);
+    return Seen{met.distance, share, shining(light, met.distance, met.cosine, 4.0f * quarter)};
 }
 
 DEVICE Seen sees_disc(const Beam &beam, const Light &light) {
-    float distance, cosine;
-    if (!meets(beam, light, light.direction, distance, cosine))
+    const Met met = meets(beam, light, light.direction);
+    if (!met.is_met)
         return Seen{};
-    const Vec3 place = beam.origin + distance * beam.direction - light.position;
     // 2.
-    const float aside = length(place);
-    const float slope = aside > 0.0f ? dot(beam.direction, place) / aside / larger(cosine, LEAST_SEEN_COSINE) : 0.0f;
-    const float share = within_circle(light.radius, aside, beam_width(beam, distance) * sqrtf(1.0f + slope * slope));
-    return Seen{distance, share, shining(light, distance, cosine, PI * (light.radius * light.radius))};
+    const float aside = length(met.place);
+    const float slope = aside > 0.0f ? dot(beam.direction, met.place) / aside / larger(met.cosine, LEAST_SEEN_COSINE) : 0.0f;
+    const float share = within_circle(light.radius, aside, beam_width(beam, met.distance) * sqrtf(1.0f + slope * slope));
+    return Seen{met.distance, share, shining(light, met.distance, met.cosine, PI * (light.radius * light.radius))};
 }
 
 DEVICE Seen sees_ball(const Beam &beam, const Light &light) {

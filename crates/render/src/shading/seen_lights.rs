@@ -28,6 +28,7 @@ use super::{cone, seen_as};
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
 use crate::sampling::disk_radius;
+use crate::shadow::size;
 
 /// The lights of a scene that rays see, with their numbers.
 pub(crate) struct SeenLights<'a>(Vec<(u32, &'a Light, bool)>);
@@ -160,23 +161,24 @@ impl Beam {
         (self.cone.width + self.cone.spread * distance).abs() * self.times
     }
 
-    /// The distance of a plane, if the ray meets it before a surface; and the cosine between them.
+    /// Where the ray meets a plane, from the light's centre, and at which distance, if that is before a surface; and the cosine between them.
     #[inline(always)]
-    fn meets(&self, light: &Light, center: Vec3, normal: Vec3) -> Option<(f32, f32)> {
-        // 1.
-        let toward = normal.dot(self.direction);
-        let distance = normal.dot(center - self.origin) / toward;
-        let is_met = distance > 0.0 && distance < f32::INFINITY && distance <= self.end * SAME_DISTANCE;
+    fn meets(&self, light: &Light, center: Vec3, normal: Vec3) -> Option<(Vec3, f32, f32)> {
+        // 1. Along the plane that is anywhere, but the light is not.
+        let (way, toward) = (center - self.origin, normal.dot(self.direction));
+        let on_plane = normal.dot(way) / toward;
+        let distance = on_plane.min(way.dot(self.direction) + size(light, 1.0));
+        let is_met =
+            on_plane > 0.0 && on_plane < f32::INFINITY && distance > 0.0 && distance <= self.end * SAME_DISTANCE;
         let shines = light.surface.is_none_or(|front| front.dot(self.direction) < 0.0);
-        (is_met && shines).then_some((distance, toward.abs()))
+        (is_met && shines).then_some((on_plane * self.direction - way, distance, toward.abs()))
     }
 
     #[inline(always)]
     fn sees_rectangle(&self, light: &Light, center: Vec3, half_u: Vec3, half_v: Vec3) -> Option<Seen> {
         let across = half_u.cross(half_v);
         let quarter = across.length();
-        let (distance, cosine) = self.meets(light, center, across / quarter)?;
-        let place = self.origin + distance * self.direction - center;
+        let (place, distance, cosine) = self.meets(light, center, across / quarter)?;
         // 2.
         let (width, least) = (self.width(distance), cosine.max(LEAST_SEEN_COSINE));
         let within = |half: Vec3| {
@@ -191,8 +193,7 @@ impl Beam {
 
     #[inline(always)]
     fn sees_disc(&self, light: &Light, center: Vec3, normal: Vec3, radius: f32) -> Option<Seen> {
-        let (distance, cosine) = self.meets(light, center, light.surface.unwrap_or(normal))?;
-        let place = self.origin + distance * self.direction - center;
+        let (place, distance, cosine) = self.meets(light, center, light.surface.unwrap_or(normal))?;
         // 2.
         let aside = place.length();
         let slope = if aside > 0.0 { self.direction.dot(place) / aside / cosine.max(LEAST_SEEN_COSINE) } else { 0.0 };

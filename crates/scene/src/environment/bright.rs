@@ -24,7 +24,7 @@ const EDGE: f32 = 2.0;
 /// A region gives at least this share of all light.
 const LEAST_SHARE: f32 = 0.01;
 /// Number of lights at most.
-const MOST_LIGHTS: usize = 12;
+const MOST_LIGHTS: usize = 8;
 /// The radius of a disc that is not halved, radians.
 const SMALL: f32 = 0.05;
 /// How far the surroundings of a region reach, texels.
