@@ -19,7 +19,6 @@ use crate::material_ids::MaterialIds;
 use crate::moved::{around_both, boxes, differ_by_places};
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
-use crate::shading::seen_lights::SeenLights;
 use crate::stage::Stage;
 use crate::sync::locked;
 use crate::textures::AllLevels;
@@ -460,7 +459,7 @@ impl PreparedScene {
     /// Whether it matters how wide the samples of pixels are: to images, to what facets reflect, and to lights that are seen.
     pub(crate) fn has_cones(&self) -> bool {
         let has_facets = || self.scene.geometry.materials.iter().any(|material| material.faceted().is_some());
-        !self.geometry.mip_levels.is_empty() || has_facets() || !SeenLights::new(&self.scene.lights).is_empty()
+        !self.geometry.mip_levels.is_empty() || has_facets() || self.scene.lights.any_is_shown()
     }
 
     /// Whether rays may go through surfaces.

@@ -43,9 +43,6 @@ use irradiance::{irradiance, nearness};
 use normal_map::{Relief, has_relief, mapped_normal, mean_normal, mirroring, normal_at};
 use tint::{Coefficients, is_tinted};
 
-/// The cosine between the way of its light and the direction to the sun of which a directional light is the same: single precision errs by less.
-const SAME_SUN: f32 = -0.999_999;
-
 /// A surface point with what formula (1) needs.
 pub(crate) struct Surface {
     pub(crate) point: SurfacePoint,
@@ -391,16 +388,9 @@ struct Glint {
 /// How rays see a light, bits of [`scene::Light`]'s constants: as an emissive surface, or the sun of what surrounds the scene, or as a surface that is
 /// none of the scene's. What a studio's key light is in mirrors, its panorama shows.
 pub(crate) fn seen_as(lights: &Lights, light: &Light) -> u32 {
-    let is_sun = match (&light.kind, &lights.environment) {
-        (LightKind::Directional { direction, .. }, Some(environment)) => {
-            let mut suns = environment.sun().into_iter().chain(environment.discs());
-            suns.any(|sun| direction.dot(sun.direction) < SAME_SUN)
-        }
-        _ => false,
-    };
-    if light.lamp || is_sun {
+    if light.lamp || lights.surroundings_show(light) {
         scene::Light::SEEN
-    } else if light.has_size() && light.intensity != Vec3::ZERO && !lights.studio {
+    } else if lights.is_shown(light) {
         scene::Light::SEEN | scene::Light::SURFACE | if light.visible { scene::Light::CAMERA } else { 0 }
     } else {
         0
