@@ -55,6 +55,12 @@ constants_of_records! {
         DISK = 4;
         /// A rectangle.
         RECTANGLE = 5;
+        /// How it is seen: mirror rays see it,
+        SEEN = 1;
+        /// as a surface that is none of the scene's: rays that go on from any surface do,
+        SURFACE = 2;
+        /// and those of the camera.
+        CAMERA = 4;
     }
     Texture {
         /// The same again.
@@ -214,6 +220,12 @@ constants! {
     LEAST_FACET_WIDTH: f32 = 0.002;
     /// The least cosine at which they are seen.
     LEAST_VIEW_COSINE: f32 = 1e-3;
+    /// The least cosine at which the width of a ray on a light is told,
+    LEAST_SEEN_COSINE: f32 = 0.01;
+    /// and at which lights that shine evenly become brighter.
+    LEAST_SHINING_COSINE: f32 = 0.1;
+    /// A light is in front of a surface as far away, by rounding and by a hair: lamps lie in ceilings.
+    SAME_DISTANCE: f32 = 1.0 + 1.0 / 16384.0;
     /// Up to this roughness, mirror rays show all that facets reflect,
     MIRROR_FADES: f32 = 0.13;
     /// and from here on nothing.

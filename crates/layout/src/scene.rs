@@ -35,7 +35,7 @@ records! {
         scale: f32,
         /// 1: it stands for an emissive surface.
         surface: u32,
-        /// 1: mirror rays see it.
+        /// How it is seen, bits of [`Light`]'s constants.
         seen: u32,
     }
 
@@ -173,6 +173,8 @@ records! {
     Environment {
         /// The image, and its means from the largest to the one that is a single texel; null if nothing surrounds the scene.
         levels: In<EnvironmentLevel>,
+        /// The same for light that is gathered, without what is lights.
+        gathered: In<EnvironmentLevel>,
         /// Unit vector to the right of the image's middle.
         east: Vec3,
         /// Number of means below the image.
@@ -187,8 +189,8 @@ records! {
         sun_radius: f32,
         /// Unit vector to the sun.
         sun: Vec3,
-        /// Padding to a multiple of sixteen bytes.
-        spare: u32,
+        /// Number of means below the image for light that is gathered.
+        gathered_lower: u32,
         /// Radiance of the sun.
         sun_radiance: Vec3,
         /// 1: the ambient light is the irradiance of the environment by the terms below.
@@ -256,6 +258,10 @@ records! {
         far: f32,
         /// Number of these runs.
         object_runs: u32,
+        /// 1: rays see lights as surfaces.
+        seen_lights: u32,
+        /// Padding to a multiple of eight bytes.
+        spare: u32,
     }
 
     /// How area lights are sampled.

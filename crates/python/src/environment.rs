@@ -12,7 +12,7 @@ use crate::errors::{self, OrRaise};
 
 /// What surrounds a scene: an equirectangular panorama of linear radiance, (H, W, 3) `float32`, straight up in its first row, with
 /// the north in its middle: -Z if `up` is "y", +Y if it is "z". East, +X, is to its right. `rotation` turns it clockwise as seen from above,
-/// degrees; `strength` multiplies it. If it shows a sun, that becomes a light.
+/// degrees; `strength` multiplies it. If it shows a sun, that becomes a light, and so do other regions that are much brighter than the rest.
 #[pyclass(frozen, from_py_object, module = "lightmesh")]
 #[derive(Clone)]
 pub(crate) struct Environment {
@@ -45,7 +45,7 @@ impl Environment {
         }
         let texels = values.chunks_exact(channels).map(|texel| [texel[0], texel[1], texel[2]]).collect();
         let environment = scene::Environment::new(name, size, texels, axis(up)?);
-        let environment = if find_sun { environment.find_sun() } else { environment };
+        let environment = if find_sun { environment.find_sun().find_lights() } else { environment };
         Ok(Environment::of(environment, rotation, strength))
     }
 

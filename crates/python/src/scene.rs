@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use lightmesh::Scene as World;
-use lightmesh::scene::{self, Instancing, Lights, SceneFormat};
+use lightmesh::scene::{self, Instancing, Lights, SceneFormat, Surroundings};
 use lightmesh_cli::request;
 use lightmesh_files::visible;
 use pyo3::prelude::*;
@@ -62,11 +62,11 @@ impl Objects {
     }
 }
 
-/// Puts an environment in the place of another one, each with its sun.
+/// Puts an environment in the place of another one, each with its lights.
 fn surround(lights: &mut Lights, environment: Option<&Environment>) {
-    let sun = lights.environment.take().and_then(|before| before.sun().and_then(|sun| sun.light().ok()));
-    if let Some(sun) = sun {
-        lights.list.retain(|light| light.kind != sun.kind);
+    if let Some(before) = lights.environment.take() {
+        let Surroundings { sun, discs, .. } = (*before).clone().into();
+        lights.list.retain(|light| !sun.iter().chain(&discs).any(|own| own.kind == light.kind));
     }
     if let Some(environment) = environment {
         lights.add((*environment.environment).clone().into());

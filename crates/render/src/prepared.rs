@@ -456,10 +456,10 @@ impl PreparedScene {
         self.scene.geometry.materials.iter().any(|material| material.catcher)
     }
 
-    /// Whether it matters how wide the samples of pixels are: to images, and to what facets reflect.
+    /// Whether it matters how wide the samples of pixels are: to images, to what facets reflect, and to lights that are seen.
     pub(crate) fn has_cones(&self) -> bool {
         let has_facets = || self.scene.geometry.materials.iter().any(|material| material.faceted().is_some());
-        !self.geometry.mip_levels.is_empty() || has_facets()
+        !self.geometry.mip_levels.is_empty() || has_facets() || self.scene.lights.any_is_shown()
     }
 
     /// Whether rays may go through surfaces.

@@ -1,5 +1,6 @@
 //! What surrounds a scene: radiance by direction, from beyond everything.
 
+mod bright;
 mod decode;
 mod irradiance;
 mod levels;
@@ -13,6 +14,7 @@ use std::sync::OnceLock;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use bright::Bright;
 pub use decode::EnvironmentError;
 use irradiance::Irradiance;
 pub use levels::EnvironmentLevel;
@@ -35,6 +37,8 @@ pub struct Environment {
     frame: [Vec3; 3],
     sun: Option<Sun>,
     levels: Levels,
+    /// What of the image is lights.
+    bright: Option<Box<Bright>>,
 }
 
 /// The image, and what follows from it, which is made when it is asked for.
@@ -66,7 +70,7 @@ impl Environment {
     /// If there are not as many as the size says, or none.
     pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[f32; 3]>, up: Up) -> Environment {
         assert!(!texels.is_empty() && texels.len() as u64 == u64::from(size[0]) * u64::from(size[1]), "{size:?}");
-        Environment { name: name.into(), size, frame: frame(up), sun: None, levels: texels.into() }
+        Environment { name: name.into(), size, frame: frame(up), sun: None, levels: texels.into(), bright: None }
     }
 
     /// From what is seen along each direction.
@@ -87,6 +91,11 @@ impl Environment {
         self.frame = [east, up, north].map(turned);
         self.levels.irradiance = OnceLock::new();
         self.sun = self.sun.map(|sun| Sun { direction: turned(sun.direction.as_dvec3()), ..sun });
+        self.bright = self.bright.map(|bright| {
+            let Bright { discs, rest } = *bright;
+            let turned = |sun: Sun| Sun { direction: turned(sun.direction.as_dvec3()), ..sun };
+            Bright { discs: discs.into_iter().map(turned).collect(), rest: rest.turned(degrees) }.into()
+        });
         self
     }
 
@@ -95,7 +104,12 @@ impl Environment {
         let mut image = std::mem::take(&mut self.levels.image);
         image.iter_mut().for_each(|texel| *texel = texel.map(|channel| channel * factor));
         self.levels = image.into();
-        self.sun = self.sun.map(|sun| Sun { radiance: factor * sun.radiance, ..sun });
+        let scaled = |sun: Sun| Sun { radiance: factor * sun.radiance, ..sun };
+        self.sun = self.sun.map(scaled);
+        self.bright = self.bright.map(|bright| {
+            let Bright { discs, rest } = *bright;
+            Bright { discs: discs.into_iter().map(scaled).collect(), rest: rest.scaled(factor) }.into()
+        });
         self
     }
 

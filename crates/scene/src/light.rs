@@ -122,6 +122,8 @@ pub struct Light {
     /// Whether it stands for an emissive surface of the scene, a [lamp](crate::Material::lamp): mirrors show that surface, and it is made again
     /// where the surface moves.
     pub lamp: bool,
+    /// Whether the camera sees a light with an area, as mirrors do.
+    pub visible: bool,
     /// The number of its motion in the scene's animation.
     pub(crate) motion: Option<u32>,
 }
@@ -235,6 +237,7 @@ impl Light {
             falloff: Falloff::None,
             surface: None,
             lamp: false,
+            visible: false,
             motion: None,
         }
     }
@@ -280,6 +283,11 @@ impl Light {
     /// The same light, standing for an emissive surface of the scene or not: see [`Light::lamp`].
     pub fn with_lamp(self, lamp: bool) -> Light {
         Light { lamp, ..self }
+    }
+
+    /// The same light, which the camera sees or not, if it has an area: see [`Light::visible`].
+    pub fn with_visible(self, visible: bool) -> Light {
+        Light { visible, ..self }
     }
 
     /// The same light with a name.

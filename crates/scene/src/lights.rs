@@ -55,9 +55,9 @@ impl Lights {
     }
 
     /// The light of a sky or a panorama in addition to all others.
-    pub fn add(&mut self, Surroundings { environment, sun }: Surroundings) {
+    pub fn add(&mut self, Surroundings { environment, sun, discs }: Surroundings) {
         self.studio = false;
-        self.list.splice(0..0, sun);
+        self.list.splice(0..0, sun.into_iter().chain(discs));
         self.environment = Some(environment.into());
     }
 
@@ -83,6 +83,29 @@ impl Lights {
             light.intensity.element_sum() / (3.0 * PI * distance * distance)
         };
         self.list.iter().map(shown).sum::<f32>().min(f32::MAX)
+    }
+
+    /// Whether what surrounds the scene shows a light: it is the sun, or a part of the image.
+    pub fn surroundings_show(&self, light: &Light) -> bool {
+        /// The cosine between the way of its light and the direction to its disc: single precision errs by less.
+        const SAME: f32 = -0.999_999;
+        let (LightKind::Directional { direction, .. }, Some(environment)) = (&light.kind, &self.environment) else {
+            return false;
+        };
+        let mut discs = environment.sun().into_iter().chain(environment.discs());
+        discs.any(|disc| direction.dot(disc.direction) < SAME)
+    }
+
+    /// Whether rays see a light as a surface of its own: it shines and has an area, and neither a lamp nor what surrounds the scene shows it. What
+    /// the key light of a studio is in mirrors, its panorama shows.
+    pub fn is_shown(&self, light: &Light) -> bool {
+        let shines = light.has_size() && light.intensity != Vec3::ZERO;
+        shines && !self.studio && !light.lamp && !self.surroundings_show(light)
+    }
+
+    /// Whether there is a light that rays see as a surface of its own.
+    pub fn any_is_shown(&self) -> bool {
+        self.list.iter().any(|light| self.is_shown(light))
     }
 
     /// Whether there are lights, all of them those of lamps.

@@ -183,6 +183,7 @@ fn all_lights() -> Scene {
     for (light, index) in scene.lights.iter_mut().zip(0..) {
         light.intensity = Vec3::new(0.3, 0.25, 0.2) * (1.0 + index as f32);
         light.falloff = if index % 2 == 0 { Falloff::None } else { Falloff::InverseSquare };
+        light.visible = index % 3 == 1;
     }
     let material = scene.geometry.materials[0].clone().with_ks([0.4, 0.3, 0.2]);
     scene.geometry_mut().materials.fill(material);

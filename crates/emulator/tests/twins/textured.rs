@@ -131,11 +131,15 @@ fn same_relief_bits<R: Target>(cuda: &Cuda<R>, aa: u32, ambient: AmbientSource) 
     }
 }
 
-/// The floor and the mirrors in a panorama with a sun.
+/// The floor and the mirrors in a panorama with a sun and a window, which is light.
 fn surrounded() -> Scene {
     let mut scene = small_texels(Wrap::Repeat, None);
     let texel = |index: u32| [0.1 * (index % 7) as f32, (index % 1021) as f32 / 1021.0, 0.001 * (index / 331) as f32];
+    let window = |index: u32| (120..150).contains(&(index % 331)) && (30..55).contains(&(index / 331));
+    let texel = |index: u32| if window(index) { [30.0, 25.0, 20.0] } else { texel(index) };
     let map = Environment::new("noise", [331, 170], (0..331 * 170).map(texel).collect(), Up::Y).turned(17.0);
+    let map = map.find_lights();
+    assert!(!map.discs().is_empty());
     let sun = Sun::new(Vec3::new(0.1, 0.2, -1.0), 6.0, Vec3::new(3.0, 2.0, 1.0));
     scene.lights.environment = Some(map.with_sun(Some(sun)).into());
     (scene.lights.ambient, scene.lights.background) = (None, None);

@@ -264,7 +264,7 @@ class Camera:
 class Environment:
     """What surrounds a scene: an equirectangular panorama of linear radiance, (H, W, 3) `float32`, straight up in its first row, with
     the north in its middle: -Z if `up` is "y", +Y if it is "z". East, +X, is to its right. `rotation` turns it clockwise as seen from above,
-    degrees; `strength` multiplies it. If it shows a sun, that becomes a light."""
+    degrees; `strength` multiplies it. If it shows a sun, that becomes a light, and so do other regions that are much brighter than the rest."""
 
     def __new__(
         cls, pixels: ArrayLike, *, up: Literal["y", "z"] = "y", rotation: float = 0.0, strength: float = 1.0, find_sun: bool = True, name: str = ""

@@ -127,6 +127,12 @@
 #define LEAST_FACET_WIDTH 0x1.0624dep-9f
 // The least cosine at which they are seen.
 #define LEAST_VIEW_COSINE 0x1.0624dep-10f
+// The least cosine at which the width of a ray on a light is told,
+#define LEAST_SEEN_COSINE 0x1.47ae14p-7f
+// and at which lights that shine evenly become brighter.
+#define LEAST_SHINING_COSINE 0x1.99999ap-4f
+// A light is in front of a surface as far away, by rounding and by a hair: lamps lie in ceilings.
+#define SAME_DISTANCE 0x1.0004p0f
 // Up to this roughness, mirror rays show all that facets reflect,
 #define MIRROR_FADES 0x1.0a3d7p-3f
 // and from here on nothing.
@@ -769,6 +775,12 @@ struct alignas(4) Light {
         DISK = 4u,
         // A rectangle.
         RECTANGLE = 5u,
+        // How it is seen: mirror rays see it,
+        SEEN = 1u,
+        // as a surface that is none of the scene's: rays that go on from any surface do,
+        SURFACE = 2u,
+        // and those of the camera.
+        CAMERA = 4u,
     };
     Vec3 position;
     unsigned kind;
@@ -949,6 +961,7 @@ static_assert(PLACE_OF(EnvironmentLevel, size) == 8, "place of EnvironmentLevel:
 
 struct alignas(8) Environment {
     const EnvironmentLevel *levels;
+    const EnvironmentLevel *gathered;
     Vec3 east;
     unsigned lower;
     Vec3 up;
@@ -956,26 +969,27 @@ struct alignas(8) Environment {
     Vec3 north;
     float sun_radius;
     Vec3 sun;
-    unsigned spare;
+    unsigned gathered_lower;
     Vec3 sun_radiance;
     unsigned lights;
     float terms[27];
     unsigned spare_b;
 };
-static_assert(sizeof(Environment) == 200, "size of Environment");
+static_assert(sizeof(Environment) == 208, "size of Environment");
 static_assert(PLACE_OF(Environment, levels) == 0, "place of Environment::levels");
-static_assert(PLACE_OF(Environment, east) == 8, "place of Environment::east");
-static_assert(PLACE_OF(Environment, lower) == 20, "place of Environment::lower");
-static_assert(PLACE_OF(Environment, up) == 24, "place of Environment::up");
-static_assert(PLACE_OF(Environment, hidden) == 36, "place of Environment::hidden");
-static_assert(PLACE_OF(Environment, north) == 40, "place of Environment::north");
-static_assert(PLACE_OF(Environment, sun_radius) == 52, "place of Environment::sun_radius");
-static_assert(PLACE_OF(Environment, sun) == 56, "place of Environment::sun");
-static_assert(PLACE_OF(Environment, spare) == 68, "place of Environment::spare");
-static_assert(PLACE_OF(Environment, sun_radiance) == 72, "place of Environment::sun_radiance");
-static_assert(PLACE_OF(Environment, lights) == 84, "place of Environment::lights");
-static_assert(PLACE_OF(Environment, terms) == 88, "place of Environment::terms");
-static_assert(PLACE_OF(Environment, spare_b) == 196, "place of Environment::spare_b");
+static_assert(PLACE_OF(Environment, gathered) == 8, "place of Environment::gathered");
+static_assert(PLACE_OF(Environment, east) == 16, "place of Environment::east");
+static_assert(PLACE_OF(Environment, lower) == 28, "place of Environment::lower");
+static_assert(PLACE_OF(Environment, up) == 32, "place of Environment::up");
+static_assert(PLACE_OF(Environment, hidden) == 44, "place of Environment::hidden");
+static_assert(PLACE_OF(Environment, north) == 48, "place of Environment::north");
+static_assert(PLACE_OF(Environment, sun_radius) == 60, "place of Environment::sun_radius");
+static_assert(PLACE_OF(Environment, sun) == 64, "place of Environment::sun");
+static_assert(PLACE_OF(Environment, gathered_lower) == 76, "place of Environment::gathered_lower");
+static_assert(PLACE_OF(Environment, sun_radiance) == 80, "place of Environment::sun_radiance");
+static_assert(PLACE_OF(Environment, lights) == 92, "place of Environment::lights");
+static_assert(PLACE_OF(Environment, terms) == 96, "place of Environment::terms");
+static_assert(PLACE_OF(Environment, spare_b) == 204, "place of Environment::spare_b");
 
 struct alignas(8) Scene {
     Triangles triangles;
@@ -1004,8 +1018,10 @@ struct alignas(8) Scene {
     Vec3 center;
     float far;
     unsigned object_runs;
+    unsigned seen_lights;
+    unsigned spare;
 };
-static_assert(sizeof(Scene) == 664, "size of Scene");
+static_assert(sizeof(Scene) == 680, "size of Scene");
 static_assert(PLACE_OF(Scene, triangles) == 0, "place of Scene::triangles");
 static_assert(PLACE_OF(Scene, indices) == 24, "place of Scene::indices");
 static_assert(PLACE_OF(Scene, normals) == 32, "place of Scene::normals");
@@ -1022,16 +1038,18 @@ static_assert(PLACE_OF(Scene, lights) == 112, "place of Scene::lights");
 static_assert(PLACE_OF(Scene, light_targets) == 120, "place of Scene::light_targets");
 static_assert(PLACE_OF(Scene, coverage) == 128, "place of Scene::coverage");
 static_assert(PLACE_OF(Scene, environment) == 144, "place of Scene::environment");
-static_assert(PLACE_OF(Scene, grid) == 344, "place of Scene::grid");
-static_assert(PLACE_OF(Scene, bvh) == 440, "place of Scene::bvh");
-static_assert(PLACE_OF(Scene, brute_force) == 496, "place of Scene::brute_force");
-static_assert(PLACE_OF(Scene, instanced) == 544, "place of Scene::instanced");
-static_assert(PLACE_OF(Scene, light_count) == 616, "place of Scene::light_count");
-static_assert(PLACE_OF(Scene, ambient) == 620, "place of Scene::ambient");
-static_assert(PLACE_OF(Scene, background) == 632, "place of Scene::background");
-static_assert(PLACE_OF(Scene, center) == 644, "place of Scene::center");
-static_assert(PLACE_OF(Scene, far) == 656, "place of Scene::far");
-static_assert(PLACE_OF(Scene, object_runs) == 660, "place of Scene::object_runs");
+static_assert(PLACE_OF(Scene, grid) == 352, "place of Scene::grid");
+static_assert(PLACE_OF(Scene, bvh) == 448, "place of Scene::bvh");
+static_assert(PLACE_OF(Scene, brute_force) == 504, "place of Scene::brute_force");
+static_assert(PLACE_OF(Scene, instanced) == 552, "place of Scene::instanced");
+static_assert(PLACE_OF(Scene, light_count) == 624, "place of Scene::light_count");
+static_assert(PLACE_OF(Scene, ambient) == 628, "place of Scene::ambient");
+static_assert(PLACE_OF(Scene, background) == 640, "place of Scene::background");
+static_assert(PLACE_OF(Scene, center) == 652, "place of Scene::center");
+static_assert(PLACE_OF(Scene, far) == 664, "place of Scene::far");
+static_assert(PLACE_OF(Scene, object_runs) == 668, "place of Scene::object_runs");
+static_assert(PLACE_OF(Scene, seen_lights) == 672, "place of Scene::seen_lights");
+static_assert(PLACE_OF(Scene, spare) == 676, "place of Scene::spare");
 
 struct alignas(8) Sampling {
     unsigned long long seed;
@@ -1374,15 +1392,15 @@ struct alignas(8) Lookup {
     unsigned count;
     unsigned first;
 };
-static_assert(sizeof(Lookup) == 792, "size of Lookup");
+static_assert(sizeof(Lookup) == 808, "size of Lookup");
 static_assert(PLACE_OF(Lookup, scene) == 0, "place of Lookup::scene");
-static_assert(PLACE_OF(Lookup, tally) == 664, "place of Lookup::tally");
-static_assert(PLACE_OF(Lookup, table) == 672, "place of Lookup::table");
-static_assert(PLACE_OF(Lookup, places) == 760, "place of Lookup::places");
-static_assert(PLACE_OF(Lookup, offsets) == 768, "place of Lookup::offsets");
-static_assert(PLACE_OF(Lookup, links) == 776, "place of Lookup::links");
-static_assert(PLACE_OF(Lookup, count) == 784, "place of Lookup::count");
-static_assert(PLACE_OF(Lookup, first) == 788, "place of Lookup::first");
+static_assert(PLACE_OF(Lookup, tally) == 680, "place of Lookup::tally");
+static_assert(PLACE_OF(Lookup, table) == 688, "place of Lookup::table");
+static_assert(PLACE_OF(Lookup, places) == 776, "place of Lookup::places");
+static_assert(PLACE_OF(Lookup, offsets) == 784, "place of Lookup::offsets");
+static_assert(PLACE_OF(Lookup, links) == 792, "place of Lookup::links");
+static_assert(PLACE_OF(Lookup, count) == 800, "place of Lookup::count");
+static_assert(PLACE_OF(Lookup, first) == 804, "place of Lookup::first");
 
 struct alignas(8) Fans {
     Scene scene;
@@ -1403,24 +1421,24 @@ struct alignas(8) Fans {
     unsigned lamps;
     unsigned spare;
 };
-static_assert(sizeof(Fans) == 888, "size of Fans");
+static_assert(sizeof(Fans) == 904, "size of Fans");
 static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
-static_assert(PLACE_OF(Fans, rays) == 664, "place of Fans::rays");
-static_assert(PLACE_OF(Fans, sampling) == 784, "place of Fans::sampling");
-static_assert(PLACE_OF(Fans, tally) == 800, "place of Fans::tally");
-static_assert(PLACE_OF(Fans, sites) == 808, "place of Fans::sites");
-static_assert(PLACE_OF(Fans, list) == 816, "place of Fans::list");
-static_assert(PLACE_OF(Fans, weights) == 824, "place of Fans::weights");
-static_assert(PLACE_OF(Fans, hits) == 832, "place of Fans::hits");
-static_assert(PLACE_OF(Fans, seen) == 840, "place of Fans::seen");
-static_assert(PLACE_OF(Fans, levels) == 848, "place of Fans::levels");
-static_assert(PLACE_OF(Fans, brightness) == 856, "place of Fans::brightness");
-static_assert(PLACE_OF(Fans, count) == 864, "place of Fans::count");
-static_assert(PLACE_OF(Fans, side) == 868, "place of Fans::side");
-static_assert(PLACE_OF(Fans, reach) == 872, "place of Fans::reach");
-static_assert(PLACE_OF(Fans, is_near) == 876, "place of Fans::is_near");
-static_assert(PLACE_OF(Fans, lamps) == 880, "place of Fans::lamps");
-static_assert(PLACE_OF(Fans, spare) == 884, "place of Fans::spare");
+static_assert(PLACE_OF(Fans, rays) == 680, "place of Fans::rays");
+static_assert(PLACE_OF(Fans, sampling) == 800, "place of Fans::sampling");
+static_assert(PLACE_OF(Fans, tally) == 816, "place of Fans::tally");
+static_assert(PLACE_OF(Fans, sites) == 824, "place of Fans::sites");
+static_assert(PLACE_OF(Fans, list) == 832, "place of Fans::list");
+static_assert(PLACE_OF(Fans, weights) == 840, "place of Fans::weights");
+static_assert(PLACE_OF(Fans, hits) == 848, "place of Fans::hits");
+static_assert(PLACE_OF(Fans, seen) == 856, "place of Fans::seen");
+static_assert(PLACE_OF(Fans, levels) == 864, "place of Fans::levels");
+static_assert(PLACE_OF(Fans, brightness) == 872, "place of Fans::brightness");
+static_assert(PLACE_OF(Fans, count) == 880, "place of Fans::count");
+static_assert(PLACE_OF(Fans, side) == 884, "place of Fans::side");
+static_assert(PLACE_OF(Fans, reach) == 888, "place of Fans::reach");
+static_assert(PLACE_OF(Fans, is_near) == 892, "place of Fans::is_near");
+static_assert(PLACE_OF(Fans, lamps) == 896, "place of Fans::lamps");
+static_assert(PLACE_OF(Fans, spare) == 900, "place of Fans::spare");
 
 struct alignas(8) Bounce {
     Scene scene;
@@ -1440,23 +1458,23 @@ struct alignas(8) Bounce {
     unsigned count;
     unsigned insist;
 };
-static_assert(sizeof(Bounce) == 1672, "size of Bounce");
+static_assert(sizeof(Bounce) == 1704, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
-static_assert(PLACE_OF(Bounce, fans) == 664, "place of Bounce::fans");
-static_assert(PLACE_OF(Bounce, names) == 1552, "place of Bounce::names");
-static_assert(PLACE_OF(Bounce, nodes) == 1592, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, sites) == 1600, "place of Bounce::sites");
-static_assert(PLACE_OF(Bounce, links) == 1608, "place of Bounce::links");
-static_assert(PLACE_OF(Bounce, listed) == 1616, "place of Bounce::listed");
-static_assert(PLACE_OF(Bounce, listed_count) == 1624, "place of Bounce::listed_count");
-static_assert(PLACE_OF(Bounce, unlinked) == 1632, "place of Bounce::unlinked");
-static_assert(PLACE_OF(Bounce, unlinked_count) == 1640, "place of Bounce::unlinked_count");
-static_assert(PLACE_OF(Bounce, linked) == 1648, "place of Bounce::linked");
-static_assert(PLACE_OF(Bounce, order) == 1652, "place of Bounce::order");
-static_assert(PLACE_OF(Bounce, finer) == 1656, "place of Bounce::finer");
-static_assert(PLACE_OF(Bounce, first) == 1660, "place of Bounce::first");
-static_assert(PLACE_OF(Bounce, count) == 1664, "place of Bounce::count");
-static_assert(PLACE_OF(Bounce, insist) == 1668, "place of Bounce::insist");
+static_assert(PLACE_OF(Bounce, fans) == 680, "place of Bounce::fans");
+static_assert(PLACE_OF(Bounce, names) == 1584, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1624, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, sites) == 1632, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, links) == 1640, "place of Bounce::links");
+static_assert(PLACE_OF(Bounce, listed) == 1648, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1656, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, unlinked) == 1664, "place of Bounce::unlinked");
+static_assert(PLACE_OF(Bounce, unlinked_count) == 1672, "place of Bounce::unlinked_count");
+static_assert(PLACE_OF(Bounce, linked) == 1680, "place of Bounce::linked");
+static_assert(PLACE_OF(Bounce, order) == 1684, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, finer) == 1688, "place of Bounce::finer");
+static_assert(PLACE_OF(Bounce, first) == 1692, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1696, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, insist) == 1700, "place of Bounce::insist");
 
 struct alignas(8) GatherFar {
     Fans fans;
@@ -1467,14 +1485,14 @@ struct alignas(8) GatherFar {
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherFar) == 928, "size of GatherFar");
+static_assert(sizeof(GatherFar) == 944, "size of GatherFar");
 static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
-static_assert(PLACE_OF(GatherFar, far) == 888, "place of GatherFar::far");
-static_assert(PLACE_OF(GatherFar, owners) == 896, "place of GatherFar::owners");
-static_assert(PLACE_OF(GatherFar, uneven) == 904, "place of GatherFar::uneven");
-static_assert(PLACE_OF(GatherFar, uneven_count) == 912, "place of GatherFar::uneven_count");
-static_assert(PLACE_OF(GatherFar, first) == 920, "place of GatherFar::first");
-static_assert(PLACE_OF(GatherFar, before) == 924, "place of GatherFar::before");
+static_assert(PLACE_OF(GatherFar, far) == 904, "place of GatherFar::far");
+static_assert(PLACE_OF(GatherFar, owners) == 912, "place of GatherFar::owners");
+static_assert(PLACE_OF(GatherFar, uneven) == 920, "place of GatherFar::uneven");
+static_assert(PLACE_OF(GatherFar, uneven_count) == 928, "place of GatherFar::uneven_count");
+static_assert(PLACE_OF(GatherFar, first) == 936, "place of GatherFar::first");
+static_assert(PLACE_OF(GatherFar, before) == 940, "place of GatherFar::before");
 
 struct alignas(8) GatherFine {
     Fans fans;
@@ -1488,17 +1506,17 @@ struct alignas(8) GatherFine {
     unsigned count;
     unsigned spare;
 };
-static_assert(sizeof(GatherFine) == 1728, "size of GatherFine");
+static_assert(sizeof(GatherFine) == 1760, "size of GatherFine");
 static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
-static_assert(PLACE_OF(GatherFine, lookup) == 888, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, far) == 1680, "place of GatherFine::far");
-static_assert(PLACE_OF(GatherFine, fine) == 1688, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, alone) == 1696, "place of GatherFine::alone");
-static_assert(PLACE_OF(GatherFine, alone_count) == 1704, "place of GatherFine::alone_count");
-static_assert(PLACE_OF(GatherFine, first) == 1712, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_alone) == 1716, "place of GatherFine::first_alone");
-static_assert(PLACE_OF(GatherFine, count) == 1720, "place of GatherFine::count");
-static_assert(PLACE_OF(GatherFine, spare) == 1724, "place of GatherFine::spare");
+static_assert(PLACE_OF(GatherFine, lookup) == 904, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, far) == 1712, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, fine) == 1720, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, alone) == 1728, "place of GatherFine::alone");
+static_assert(PLACE_OF(GatherFine, alone_count) == 1736, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, first) == 1744, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_alone) == 1748, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, count) == 1752, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1756, "place of GatherFine::spare");
 
 struct alignas(8) GatherPoints {
     Scene scene;
@@ -1530,35 +1548,35 @@ struct alignas(8) GatherPoints {
     unsigned all_alone;
     unsigned spare;
 };
-static_assert(sizeof(GatherPoints) == 1744, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1776, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
-static_assert(PLACE_OF(GatherPoints, rays) == 664, "place of GatherPoints::rays");
-static_assert(PLACE_OF(GatherPoints, hits) == 784, "place of GatherPoints::hits");
-static_assert(PLACE_OF(GatherPoints, lookup) == 792, "place of GatherPoints::lookup");
-static_assert(PLACE_OF(GatherPoints, fine) == 1584, "place of GatherPoints::fine");
-static_assert(PLACE_OF(GatherPoints, places) == 1592, "place of GatherPoints::places");
-static_assert(PLACE_OF(GatherPoints, means) == 1600, "place of GatherPoints::means");
-static_assert(PLACE_OF(GatherPoints, alone) == 1608, "place of GatherPoints::alone");
-static_assert(PLACE_OF(GatherPoints, alone_count) == 1616, "place of GatherPoints::alone_count");
-static_assert(PLACE_OF(GatherPoints, sites) == 1624, "place of GatherPoints::sites");
-static_assert(PLACE_OF(GatherPoints, asked) == 1632, "place of GatherPoints::asked");
-static_assert(PLACE_OF(GatherPoints, own) == 1640, "place of GatherPoints::own");
-static_assert(PLACE_OF(GatherPoints, far) == 1648, "place of GatherPoints::far");
-static_assert(PLACE_OF(GatherPoints, light) == 1656, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, normals) == 1664, "place of GatherPoints::normals");
-static_assert(PLACE_OF(GatherPoints, samples) == 1672, "place of GatherPoints::samples");
-static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1680, "place of GatherPoints::sampled_pixels");
-static_assert(PLACE_OF(GatherPoints, sample_count) == 1688, "place of GatherPoints::sample_count");
-static_assert(PLACE_OF(GatherPoints, first_sampled) == 1692, "place of GatherPoints::first_sampled");
-static_assert(PLACE_OF(GatherPoints, eye) == 1696, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1708, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1716, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1720, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1724, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1728, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1732, "place of GatherPoints::first_alone");
-static_assert(PLACE_OF(GatherPoints, all_alone) == 1736, "place of GatherPoints::all_alone");
-static_assert(PLACE_OF(GatherPoints, spare) == 1740, "place of GatherPoints::spare");
+static_assert(PLACE_OF(GatherPoints, rays) == 680, "place of GatherPoints::rays");
+static_assert(PLACE_OF(GatherPoints, hits) == 800, "place of GatherPoints::hits");
+static_assert(PLACE_OF(GatherPoints, lookup) == 808, "place of GatherPoints::lookup");
+static_assert(PLACE_OF(GatherPoints, fine) == 1616, "place of GatherPoints::fine");
+static_assert(PLACE_OF(GatherPoints, places) == 1624, "place of GatherPoints::places");
+static_assert(PLACE_OF(GatherPoints, means) == 1632, "place of GatherPoints::means");
+static_assert(PLACE_OF(GatherPoints, alone) == 1640, "place of GatherPoints::alone");
+static_assert(PLACE_OF(GatherPoints, alone_count) == 1648, "place of GatherPoints::alone_count");
+static_assert(PLACE_OF(GatherPoints, sites) == 1656, "place of GatherPoints::sites");
+static_assert(PLACE_OF(GatherPoints, asked) == 1664, "place of GatherPoints::asked");
+static_assert(PLACE_OF(GatherPoints, own) == 1672, "place of GatherPoints::own");
+static_assert(PLACE_OF(GatherPoints, far) == 1680, "place of GatherPoints::far");
+static_assert(PLACE_OF(GatherPoints, light) == 1688, "place of GatherPoints::light");
+static_assert(PLACE_OF(GatherPoints, normals) == 1696, "place of GatherPoints::normals");
+static_assert(PLACE_OF(GatherPoints, samples) == 1704, "place of GatherPoints::samples");
+static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1712, "place of GatherPoints::sampled_pixels");
+static_assert(PLACE_OF(GatherPoints, sample_count) == 1720, "place of GatherPoints::sample_count");
+static_assert(PLACE_OF(GatherPoints, first_sampled) == 1724, "place of GatherPoints::first_sampled");
+static_assert(PLACE_OF(GatherPoints, eye) == 1728, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1740, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1748, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1752, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1756, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1760, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_alone) == 1764, "place of GatherPoints::first_alone");
+static_assert(PLACE_OF(GatherPoints, all_alone) == 1768, "place of GatherPoints::all_alone");
+static_assert(PLACE_OF(GatherPoints, spare) == 1772, "place of GatherPoints::spare");
 
 struct alignas(4) TileBox {
     Vec3 low;
@@ -1580,17 +1598,17 @@ struct alignas(8) GroupItems {
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupItems) == 848, "size of GroupItems");
+static_assert(sizeof(GroupItems) == 864, "size of GroupItems");
 static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
-static_assert(PLACE_OF(GroupItems, rays) == 664, "place of GroupItems::rays");
-static_assert(PLACE_OF(GroupItems, hits) == 784, "place of GroupItems::hits");
-static_assert(PLACE_OF(GroupItems, members) == 792, "place of GroupItems::members");
-static_assert(PLACE_OF(GroupItems, ends) == 800, "place of GroupItems::ends");
-static_assert(PLACE_OF(GroupItems, counts) == 808, "place of GroupItems::counts");
-static_assert(PLACE_OF(GroupItems, items) == 816, "place of GroupItems::items");
-static_assert(PLACE_OF(GroupItems, tiles) == 824, "place of GroupItems::tiles");
-static_assert(PLACE_OF(GroupItems, first_block) == 832, "place of GroupItems::first_block");
-static_assert(PLACE_OF(GroupItems, spacing) == 840, "place of GroupItems::spacing");
+static_assert(PLACE_OF(GroupItems, rays) == 680, "place of GroupItems::rays");
+static_assert(PLACE_OF(GroupItems, hits) == 800, "place of GroupItems::hits");
+static_assert(PLACE_OF(GroupItems, members) == 808, "place of GroupItems::members");
+static_assert(PLACE_OF(GroupItems, ends) == 816, "place of GroupItems::ends");
+static_assert(PLACE_OF(GroupItems, counts) == 824, "place of GroupItems::counts");
+static_assert(PLACE_OF(GroupItems, items) == 832, "place of GroupItems::items");
+static_assert(PLACE_OF(GroupItems, tiles) == 840, "place of GroupItems::tiles");
+static_assert(PLACE_OF(GroupItems, first_block) == 848, "place of GroupItems::first_block");
+static_assert(PLACE_OF(GroupItems, spacing) == 856, "place of GroupItems::spacing");
 
 struct alignas(4) Weighed {
     unsigned above;
@@ -1625,26 +1643,26 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 2232, "size of Shadows");
+static_assert(sizeof(Shadows) == 2248, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
-static_assert(PLACE_OF(Shadows, rays) == 664, "place of Shadows::rays");
-static_assert(PLACE_OF(Shadows, hits) == 784, "place of Shadows::hits");
-static_assert(PLACE_OF(Shadows, members) == 792, "place of Shadows::members");
-static_assert(PLACE_OF(Shadows, items) == 800, "place of Shadows::items");
-static_assert(PLACE_OF(Shadows, tiles) == 808, "place of Shadows::tiles");
-static_assert(PLACE_OF(Shadows, starts) == 816, "place of Shadows::starts");
-static_assert(PLACE_OF(Shadows, taken) == 824, "place of Shadows::taken");
-static_assert(PLACE_OF(Shadows, share) == 832, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, weighed) == 840, "place of Shadows::weighed");
-static_assert(PLACE_OF(Shadows, sampling) == 848, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 864, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 872, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 880, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 888, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 2216, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 2220, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 2224, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 2228, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, rays) == 680, "place of Shadows::rays");
+static_assert(PLACE_OF(Shadows, hits) == 800, "place of Shadows::hits");
+static_assert(PLACE_OF(Shadows, members) == 808, "place of Shadows::members");
+static_assert(PLACE_OF(Shadows, items) == 816, "place of Shadows::items");
+static_assert(PLACE_OF(Shadows, tiles) == 824, "place of Shadows::tiles");
+static_assert(PLACE_OF(Shadows, starts) == 832, "place of Shadows::starts");
+static_assert(PLACE_OF(Shadows, taken) == 840, "place of Shadows::taken");
+static_assert(PLACE_OF(Shadows, share) == 848, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, weighed) == 856, "place of Shadows::weighed");
+static_assert(PLACE_OF(Shadows, sampling) == 864, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 880, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 888, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 896, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 904, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 2232, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 2236, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 2240, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 2244, "place of Shadows::end_light");
 
 struct alignas(8) Filters {
     Scene scene;
@@ -1657,16 +1675,16 @@ struct alignas(8) Filters {
     unsigned parts;
     unsigned spare;
 };
-static_assert(sizeof(Filters) == 2952, "size of Filters");
+static_assert(sizeof(Filters) == 2984, "size of Filters");
 static_assert(PLACE_OF(Filters, scene) == 0, "place of Filters::scene");
-static_assert(PLACE_OF(Filters, shadows) == 664, "place of Filters::shadows");
-static_assert(PLACE_OF(Filters, triangles) == 2896, "place of Filters::triangles");
-static_assert(PLACE_OF(Filters, normals) == 2920, "place of Filters::normals");
-static_assert(PLACE_OF(Filters, passed) == 2928, "place of Filters::passed");
-static_assert(PLACE_OF(Filters, middle) == 2936, "place of Filters::middle");
-static_assert(PLACE_OF(Filters, level) == 2940, "place of Filters::level");
-static_assert(PLACE_OF(Filters, parts) == 2944, "place of Filters::parts");
-static_assert(PLACE_OF(Filters, spare) == 2948, "place of Filters::spare");
+static_assert(PLACE_OF(Filters, shadows) == 680, "place of Filters::shadows");
+static_assert(PLACE_OF(Filters, triangles) == 2928, "place of Filters::triangles");
+static_assert(PLACE_OF(Filters, normals) == 2952, "place of Filters::normals");
+static_assert(PLACE_OF(Filters, passed) == 2960, "place of Filters::passed");
+static_assert(PLACE_OF(Filters, middle) == 2968, "place of Filters::middle");
+static_assert(PLACE_OF(Filters, level) == 2972, "place of Filters::level");
+static_assert(PLACE_OF(Filters, parts) == 2976, "place of Filters::parts");
+static_assert(PLACE_OF(Filters, spare) == 2980, "place of Filters::spare");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -1681,18 +1699,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 3352, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 3384, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
-static_assert(PLACE_OF(AdaptiveShadows, shadows) == 664, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2896, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2904, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2912, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2920, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2928, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2936, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2944, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3344, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 3348, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, shadows) == 680, "place of AdaptiveShadows::shadows");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2928, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2936, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2944, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2952, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2960, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2968, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 2976, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3376, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 3380, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;
@@ -1701,12 +1719,12 @@ struct alignas(8) PrimaryRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(PrimaryRays) == 808, "size of PrimaryRays");
+static_assert(sizeof(PrimaryRays) == 824, "size of PrimaryRays");
 static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
-static_assert(PLACE_OF(PrimaryRays, rays) == 664, "place of PrimaryRays::rays");
-static_assert(PLACE_OF(PrimaryRays, hits) == 784, "place of PrimaryRays::hits");
-static_assert(PLACE_OF(PrimaryRays, tally) == 792, "place of PrimaryRays::tally");
-static_assert(PLACE_OF(PrimaryRays, first_block) == 800, "place of PrimaryRays::first_block");
+static_assert(PLACE_OF(PrimaryRays, rays) == 680, "place of PrimaryRays::rays");
+static_assert(PLACE_OF(PrimaryRays, hits) == 800, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 808, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 816, "place of PrimaryRays::first_block");
 
 struct alignas(8) ShadowRays {
     Scene scene;
@@ -1718,15 +1736,15 @@ struct alignas(8) ShadowRays {
     unsigned first_light;
     unsigned light_count;
 };
-static_assert(sizeof(ShadowRays) == 824, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 840, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
-static_assert(PLACE_OF(ShadowRays, rays) == 664, "place of ShadowRays::rays");
-static_assert(PLACE_OF(ShadowRays, hits) == 784, "place of ShadowRays::hits");
-static_assert(PLACE_OF(ShadowRays, share) == 792, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, tally) == 800, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 808, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_light) == 816, "place of ShadowRays::first_light");
-static_assert(PLACE_OF(ShadowRays, light_count) == 820, "place of ShadowRays::light_count");
+static_assert(PLACE_OF(ShadowRays, rays) == 680, "place of ShadowRays::rays");
+static_assert(PLACE_OF(ShadowRays, hits) == 800, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 808, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, tally) == 816, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 824, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_light) == 832, "place of ShadowRays::first_light");
+static_assert(PLACE_OF(ShadowRays, light_count) == 836, "place of ShadowRays::light_count");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -1761,38 +1779,38 @@ struct alignas(8) Shade {
     unsigned catches;
     unsigned weighed;
 };
-static_assert(sizeof(Shade) == 984, "size of Shade");
+static_assert(sizeof(Shade) == 1000, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
-static_assert(PLACE_OF(Shade, rays) == 664, "place of Shade::rays");
-static_assert(PLACE_OF(Shade, hits) == 784, "place of Shade::hits");
-static_assert(PLACE_OF(Shade, share) == 792, "place of Shade::share");
-static_assert(PLACE_OF(Shade, passed) == 800, "place of Shade::passed");
-static_assert(PLACE_OF(Shade, used) == 808, "place of Shade::used");
-static_assert(PLACE_OF(Shade, gathered) == 816, "place of Shade::gathered");
-static_assert(PLACE_OF(Shade, film_pixel) == 824, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 832, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 840, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 848, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 856, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 864, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 872, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 880, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 888, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 896, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 904, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 912, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 920, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 928, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 936, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 944, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 948, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 952, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 956, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 960, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 964, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 968, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 976, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, weighed) == 980, "place of Shade::weighed");
+static_assert(PLACE_OF(Shade, rays) == 680, "place of Shade::rays");
+static_assert(PLACE_OF(Shade, hits) == 800, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 808, "place of Shade::share");
+static_assert(PLACE_OF(Shade, passed) == 816, "place of Shade::passed");
+static_assert(PLACE_OF(Shade, used) == 824, "place of Shade::used");
+static_assert(PLACE_OF(Shade, gathered) == 832, "place of Shade::gathered");
+static_assert(PLACE_OF(Shade, film_pixel) == 840, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 848, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 856, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 864, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 872, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 880, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 888, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 896, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 904, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 912, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 920, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 928, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 936, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 944, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 952, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 960, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 964, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 968, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 972, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 976, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 980, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 984, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 992, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, weighed) == 996, "place of Shade::weighed");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -1834,45 +1852,45 @@ struct alignas(8) PixelSamples {
     unsigned matte_slots;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 1328, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 1344, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
-static_assert(PLACE_OF(PixelSamples, rays) == 664, "place of PixelSamples::rays");
-static_assert(PLACE_OF(PixelSamples, hits) == 784, "place of PixelSamples::hits");
-static_assert(PLACE_OF(PixelSamples, centers) == 792, "place of PixelSamples::centers");
-static_assert(PLACE_OF(PixelSamples, state) == 800, "place of PixelSamples::state");
-static_assert(PLACE_OF(PixelSamples, owners) == 808, "place of PixelSamples::owners");
-static_assert(PLACE_OF(PixelSamples, color) == 816, "place of PixelSamples::color");
-static_assert(PLACE_OF(PixelSamples, counts) == 824, "place of PixelSamples::counts");
-static_assert(PLACE_OF(PixelSamples, fragments) == 848, "place of PixelSamples::fragments");
-static_assert(PLACE_OF(PixelSamples, fragment_hits) == 872, "place of PixelSamples::fragment_hits");
-static_assert(PLACE_OF(PixelSamples, coverage) == 896, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, caught) == 904, "place of PixelSamples::caught");
-static_assert(PLACE_OF(PixelSamples, depth) == 912, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 920, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 928, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 936, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 944, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, light_groups) == 952, "place of PixelSamples::light_groups");
-static_assert(PLACE_OF(PixelSamples, ids) == 960, "place of PixelSamples::ids");
-static_assert(PLACE_OF(PixelSamples, mattes) == 968, "place of PixelSamples::mattes");
-static_assert(PLACE_OF(PixelSamples, tally) == 976, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 984, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 992, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 1000, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 1008, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 1016, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 1024, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 1032, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, together) == 1036, "place of PixelSamples::together");
-static_assert(PLACE_OF(PixelSamples, lanes) == 1040, "place of PixelSamples::lanes");
-static_assert(PLACE_OF(PixelSamples, light_count) == 1044, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 1048, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 1052, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 1056, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 1060, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 1064, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, matte_slots) == 1068, "place of PixelSamples::matte_slots");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 1072, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, rays) == 680, "place of PixelSamples::rays");
+static_assert(PLACE_OF(PixelSamples, hits) == 800, "place of PixelSamples::hits");
+static_assert(PLACE_OF(PixelSamples, centers) == 808, "place of PixelSamples::centers");
+static_assert(PLACE_OF(PixelSamples, state) == 816, "place of PixelSamples::state");
+static_assert(PLACE_OF(PixelSamples, owners) == 824, "place of PixelSamples::owners");
+static_assert(PLACE_OF(PixelSamples, color) == 832, "place of PixelSamples::color");
+static_assert(PLACE_OF(PixelSamples, counts) == 840, "place of PixelSamples::counts");
+static_assert(PLACE_OF(PixelSamples, fragments) == 864, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, fragment_hits) == 888, "place of PixelSamples::fragment_hits");
+static_assert(PLACE_OF(PixelSamples, coverage) == 912, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, caught) == 920, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 928, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 936, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 944, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 952, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 960, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, light_groups) == 968, "place of PixelSamples::light_groups");
+static_assert(PLACE_OF(PixelSamples, ids) == 976, "place of PixelSamples::ids");
+static_assert(PLACE_OF(PixelSamples, mattes) == 984, "place of PixelSamples::mattes");
+static_assert(PLACE_OF(PixelSamples, tally) == 992, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 1000, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 1008, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 1016, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 1024, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 1032, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 1040, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 1048, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, together) == 1052, "place of PixelSamples::together");
+static_assert(PLACE_OF(PixelSamples, lanes) == 1056, "place of PixelSamples::lanes");
+static_assert(PLACE_OF(PixelSamples, light_count) == 1060, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 1064, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 1068, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 1072, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 1076, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 1080, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, matte_slots) == 1084, "place of PixelSamples::matte_slots");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 1088, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -1882,13 +1900,13 @@ struct alignas(8) MirrorRays {
     ListedRay *onward;
     Cone *cones;
 };
-static_assert(sizeof(MirrorRays) == 816, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 832, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
-static_assert(PLACE_OF(MirrorRays, rays) == 664, "place of MirrorRays::rays");
-static_assert(PLACE_OF(MirrorRays, hits) == 784, "place of MirrorRays::hits");
-static_assert(PLACE_OF(MirrorRays, counts) == 792, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, onward) == 800, "place of MirrorRays::onward");
-static_assert(PLACE_OF(MirrorRays, cones) == 808, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, rays) == 680, "place of MirrorRays::rays");
+static_assert(PLACE_OF(MirrorRays, hits) == 800, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 808, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, onward) == 816, "place of MirrorRays::onward");
+static_assert(PLACE_OF(MirrorRays, cones) == 824, "place of MirrorRays::cones");
 
 struct alignas(8) MergedRays {
     Scene scene;
@@ -1901,16 +1919,16 @@ struct alignas(8) MergedRays {
     Cone *cones;
     float spacing[2];
 };
-static_assert(sizeof(MergedRays) == 840, "size of MergedRays");
+static_assert(sizeof(MergedRays) == 856, "size of MergedRays");
 static_assert(PLACE_OF(MergedRays, scene) == 0, "place of MergedRays::scene");
-static_assert(PLACE_OF(MergedRays, rays) == 664, "place of MergedRays::rays");
-static_assert(PLACE_OF(MergedRays, hits) == 784, "place of MergedRays::hits");
-static_assert(PLACE_OF(MergedRays, merged) == 792, "place of MergedRays::merged");
-static_assert(PLACE_OF(MergedRays, counts) == 800, "place of MergedRays::counts");
-static_assert(PLACE_OF(MergedRays, left) == 808, "place of MergedRays::left");
-static_assert(PLACE_OF(MergedRays, left_hits) == 816, "place of MergedRays::left_hits");
-static_assert(PLACE_OF(MergedRays, cones) == 824, "place of MergedRays::cones");
-static_assert(PLACE_OF(MergedRays, spacing) == 832, "place of MergedRays::spacing");
+static_assert(PLACE_OF(MergedRays, rays) == 680, "place of MergedRays::rays");
+static_assert(PLACE_OF(MergedRays, hits) == 800, "place of MergedRays::hits");
+static_assert(PLACE_OF(MergedRays, merged) == 808, "place of MergedRays::merged");
+static_assert(PLACE_OF(MergedRays, counts) == 816, "place of MergedRays::counts");
+static_assert(PLACE_OF(MergedRays, left) == 824, "place of MergedRays::left");
+static_assert(PLACE_OF(MergedRays, left_hits) == 832, "place of MergedRays::left_hits");
+static_assert(PLACE_OF(MergedRays, cones) == 840, "place of MergedRays::cones");
+static_assert(PLACE_OF(MergedRays, spacing) == 848, "place of MergedRays::spacing");
 
 struct alignas(8) GroupCells {
     Scene scene;
@@ -1923,16 +1941,16 @@ struct alignas(8) GroupCells {
     Item *items;
     unsigned long long first_block;
 };
-static_assert(sizeof(GroupCells) == 912, "size of GroupCells");
+static_assert(sizeof(GroupCells) == 928, "size of GroupCells");
 static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
-static_assert(PLACE_OF(GroupCells, rays) == 664, "place of GroupCells::rays");
-static_assert(PLACE_OF(GroupCells, hits) == 784, "place of GroupCells::hits");
-static_assert(PLACE_OF(GroupCells, mesh) == 792, "place of GroupCells::mesh");
-static_assert(PLACE_OF(GroupCells, members) == 872, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_items) == 880, "place of GroupCells::tile_items");
-static_assert(PLACE_OF(GroupCells, counts) == 888, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, items) == 896, "place of GroupCells::items");
-static_assert(PLACE_OF(GroupCells, first_block) == 904, "place of GroupCells::first_block");
+static_assert(PLACE_OF(GroupCells, rays) == 680, "place of GroupCells::rays");
+static_assert(PLACE_OF(GroupCells, hits) == 800, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 808, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 888, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_items) == 896, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, counts) == 904, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, items) == 912, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, first_block) == 920, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
     Scene scene;
@@ -1946,17 +1964,17 @@ struct alignas(8) ShortTests {
     unsigned long long first_item;
     unsigned long long item_count;
 };
-static_assert(sizeof(ShortTests) == 920, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 936, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
-static_assert(PLACE_OF(ShortTests, rays) == 664, "place of ShortTests::rays");
-static_assert(PLACE_OF(ShortTests, hits) == 784, "place of ShortTests::hits");
-static_assert(PLACE_OF(ShortTests, mesh) == 792, "place of ShortTests::mesh");
-static_assert(PLACE_OF(ShortTests, members) == 872, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, items) == 880, "place of ShortTests::items");
-static_assert(PLACE_OF(ShortTests, masks) == 888, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, tally) == 896, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 904, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 912, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, rays) == 680, "place of ShortTests::rays");
+static_assert(PLACE_OF(ShortTests, hits) == 800, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 808, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 888, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, items) == 896, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, masks) == 904, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, tally) == 912, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_item) == 920, "place of ShortTests::first_item");
+static_assert(PLACE_OF(ShortTests, item_count) == 928, "place of ShortTests::item_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
@@ -1999,18 +2017,18 @@ struct alignas(8) LongTests {
     unsigned first_sample;
     unsigned sample_count;
 };
-static_assert(sizeof(LongTests) == 848, "size of LongTests");
+static_assert(sizeof(LongTests) == 864, "size of LongTests");
 static_assert(PLACE_OF(LongTests, scene) == 0, "place of LongTests::scene");
-static_assert(PLACE_OF(LongTests, mesh) == 664, "place of LongTests::mesh");
-static_assert(PLACE_OF(LongTests, points) == 744, "place of LongTests::points");
-static_assert(PLACE_OF(LongTests, lit) == 784, "place of LongTests::lit");
-static_assert(PLACE_OF(LongTests, sampling) == 800, "place of LongTests::sampling");
-static_assert(PLACE_OF(LongTests, tally) == 816, "place of LongTests::tally");
-static_assert(PLACE_OF(LongTests, light) == 824, "place of LongTests::light");
-static_assert(PLACE_OF(LongTests, point_count) == 828, "place of LongTests::point_count");
-static_assert(PLACE_OF(LongTests, first_point) == 832, "place of LongTests::first_point");
-static_assert(PLACE_OF(LongTests, first_sample) == 840, "place of LongTests::first_sample");
-static_assert(PLACE_OF(LongTests, sample_count) == 844, "place of LongTests::sample_count");
+static_assert(PLACE_OF(LongTests, mesh) == 680, "place of LongTests::mesh");
+static_assert(PLACE_OF(LongTests, points) == 760, "place of LongTests::points");
+static_assert(PLACE_OF(LongTests, lit) == 800, "place of LongTests::lit");
+static_assert(PLACE_OF(LongTests, sampling) == 816, "place of LongTests::sampling");
+static_assert(PLACE_OF(LongTests, tally) == 832, "place of LongTests::tally");
+static_assert(PLACE_OF(LongTests, light) == 840, "place of LongTests::light");
+static_assert(PLACE_OF(LongTests, point_count) == 844, "place of LongTests::point_count");
+static_assert(PLACE_OF(LongTests, first_point) == 848, "place of LongTests::first_point");
+static_assert(PLACE_OF(LongTests, first_sample) == 856, "place of LongTests::first_sample");
+static_assert(PLACE_OF(LongTests, sample_count) == 860, "place of LongTests::sample_count");
 
 struct alignas(8) Cache {
     UsedPoints points;
@@ -2062,25 +2080,25 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 1024, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 1040, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
-static_assert(PLACE_OF(Interpolate, rays) == 664, "place of Interpolate::rays");
-static_assert(PLACE_OF(Interpolate, hits) == 784, "place of Interpolate::hits");
-static_assert(PLACE_OF(Interpolate, mesh) == 792, "place of Interpolate::mesh");
-static_assert(PLACE_OF(Interpolate, members) == 872, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, items) == 880, "place of Interpolate::items");
-static_assert(PLACE_OF(Interpolate, masks) == 888, "place of Interpolate::masks");
-static_assert(PLACE_OF(Interpolate, points) == 896, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, slots) == 936, "place of Interpolate::slots");
-static_assert(PLACE_OF(Interpolate, lit) == 944, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 952, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 960, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, fallback_rays) == 968, "place of Interpolate::fallback_rays");
-static_assert(PLACE_OF(Interpolate, fallback_count) == 976, "place of Interpolate::fallback_count");
-static_assert(PLACE_OF(Interpolate, sampling) == 984, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 1000, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 1008, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 1016, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, rays) == 680, "place of Interpolate::rays");
+static_assert(PLACE_OF(Interpolate, hits) == 800, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 808, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 888, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, items) == 896, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, masks) == 904, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 912, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, slots) == 952, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 960, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 968, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 976, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 984, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 992, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 1000, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 1016, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 1024, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 1032, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

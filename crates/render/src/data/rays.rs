@@ -100,12 +100,17 @@ impl RayList {
     /// The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
     #[inline(always)]
     pub(crate) fn spread_of(&self, ray: usize) -> f32 {
-        let samples = match (&self.sampled, self.shared.get(ray)) {
+        self.cone_of(ray).spread.abs() * self.samples_of(ray).sqrt()
+    }
+
+    /// How many samples are shaded with a ray.
+    #[inline(always)]
+    pub(crate) fn samples_of(&self, ray: usize) -> f32 {
+        match (&self.sampled, self.shared.get(ray)) {
             (Some(sampled), None) if self.from_camera() => sampled.count as f32,
             (_, Some(shared)) => shared.count_ones().max(1) as f32,
             _ => 1.0,
-        };
-        self.cone_of(ray).spread.abs() * samples.sqrt()
+        }
     }
 
     /// What the samples of its pixel see that are shaded with a ray, if any are.

@@ -184,7 +184,8 @@ impl Sources {
         let Sources { lights, environment, seed, fans } = self;
         add(format!("{lights:?} {seed} {fans:?}").as_bytes());
         if let Some(environment) = environment {
-            add(format!("{:?} {:?} {:?}", environment.size(), environment.frame(), environment.sun()).as_bytes());
+            let (size, frame) = (environment.size(), environment.frame());
+            add(format!("{size:?} {frame:?} {:?} {:?}", environment.sun(), environment.discs()).as_bytes());
             add(bytemuck::cast_slice(environment.texels().as_flattened()));
         }
         hash.digest()

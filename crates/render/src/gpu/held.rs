@@ -41,6 +41,8 @@ pub(super) struct DeviceTextures<R: Runtime> {
 /// An environment on a device: its levels.
 pub(super) struct DeviceEnvironment<R: Runtime> {
     pub(super) levels: Buffer<R, EnvironmentLevel>,
+    /// Those for light that is gathered, if they are others.
+    pub(super) gathered: Option<Buffer<R, EnvironmentLevel>>,
     /// What the levels point to.
     #[expect(dead_code, reason = "only kept")]
     pub(super) texels: Buffers<R>,

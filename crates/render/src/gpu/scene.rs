@@ -23,8 +23,9 @@ use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
 use crate::sampling::disk_radius;
 use crate::settings::Acceleration;
 use crate::shading::ambient::AmbientLight;
+use crate::shading::seen_lights::SeenLights;
 use crate::shading::tint::is_tinted;
-use crate::shading::{LightTargets, is_seen};
+use crate::shading::{LightTargets, seen_as};
 use crate::stage::Stage;
 use crate::sync::locked;
 
@@ -141,7 +142,9 @@ impl<R: Runtime> Cuda<R> {
         let environment =
             lights.environment.as_ref().map(|original| self.device_environment(job, original)).transpose()?;
         if let (Some(original), Some(copy)) = (&lights.environment, &environment) {
-            record.environment = environment_record(scene, original, copy.levels.input());
+            let gathered = copy.gathered.as_ref().unwrap_or(&copy.levels);
+            let levels = [copy.levels.input(), gathered.input()];
+            record.environment = environment_record(scene, original, levels);
         }
         Ok(DeviceScene {
             record,
@@ -211,14 +214,16 @@ impl<R: Runtime> Cuda<R> {
                     size,
                 })
             };
-            let mut levels = vec![level(original.size(), original.texels())?];
-            for lower in original.levels() {
-                levels.push(level(lower.size, &lower.texels)?);
-            }
-            Ok(DeviceEnvironment {
-                levels: self.pool.upload("levels of the environment", &levels)?,
-                texels: upload.buffers,
-            })
+            let mut all = |of: &Environment| -> Result<Buffer<R, EnvironmentLevel>, RenderError> {
+                let mut levels = vec![level(of.size(), of.texels())?];
+                for lower in of.levels() {
+                    levels.push(level(lower.size, &lower.texels)?);
+                }
+                self.pool.upload("levels of the environment", &levels)
+            };
+            let seen = all(original)?;
+            let gathered = (!std::ptr::eq(original.gathered(), &**original)).then(|| all(original.gathered()));
+            Ok(DeviceEnvironment { levels: seen, gathered: gathered.transpose()?, texels: upload.buffers })
         };
         let copy = Arc::new(job.wall_time(Stage::Upload, upload)?);
         resident.keep(original, Arc::clone(&copy));
@@ -230,13 +235,14 @@ impl<R: Runtime> Cuda<R> {
 fn environment_record(
     scene: &PreparedScene,
     original: &Environment,
-    levels: In<EnvironmentLevel>,
+    [levels, gathered]: [In<EnvironmentLevel>; 2],
 ) -> layout::Environment {
     let terms = AmbientLight::of(scene).terms;
     let [east, up, north] = original.frame().map(vec3);
     let sun = original.sun();
     layout::Environment {
         levels,
+        gathered,
         east,
         up,
         north,
@@ -247,7 +253,7 @@ fn environment_record(
         sun_radiance: vec3(sun.map_or(glam::Vec3::ZERO, |sun| sun.radiance)),
         lights: u32::from(terms.is_some()),
         terms: bytemuck::cast(terms.unwrap_or_default().map(|term| term.to_array())),
-        spare: 0,
+        gathered_lower: original.gathered().levels().len() as u32,
         spare_b: 0,
     }
 }
@@ -343,15 +349,14 @@ impl<R: Runtime> Upload<'_, R> {
     /// The record of a scene with these lights.
     fn lights(&mut self, scene: &PreparedScene, geometry: Scene) -> Result<Scene, RenderError> {
         let lights = &scene.scene.lights;
-        let records: Vec<Light> = lights
-            .iter()
-            .map(|it| Light { seen: u32::from(is_seen(lights, it)), ..light(&scene.geometry, it) })
-            .collect();
+        let records: Vec<Light> =
+            lights.iter().map(|it| Light { seen: seen_as(lights, it), ..light(&scene.geometry, it) }).collect();
         let targets = LightTargets::new(lights).flat();
         Ok(Scene {
             lights: self.array("lights", &records)?,
             light_targets: self.array::<Vec3>("points on lights", bytemuck::cast_slice(&targets))?,
             light_count: records.len() as u32,
+            seen_lights: u32::from(!SeenLights::new(lights).is_empty()),
             ambient: vec3(AmbientLight::of(scene).mean),
             background: vec3(lights.background.unwrap_or_default()),
             ..geometry

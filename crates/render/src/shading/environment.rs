@@ -27,7 +27,7 @@ pub(crate) fn missed(wave: &HostWave, ray: usize) -> Vec3 {
 
 /// What surfaces receive from outside of the scene along a direction, but for lights.
 pub(crate) fn surroundings(lights: &Lights, direction: Vec3, spread: f32) -> Vec3 {
-    lights.environment.as_ref().map_or(Vec3::ZERO, |environment| without_sun(environment, direction, spread))
+    lights.environment.as_ref().map_or(Vec3::ZERO, |environment| without_sun(environment.gathered(), direction, spread))
 }
 
 /// The mean radiance that a cone of this angle around `direction` sees.

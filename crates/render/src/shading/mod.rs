@@ -16,6 +16,7 @@ pub(crate) mod facets;
 pub(crate) mod ids;
 pub(crate) mod irradiance;
 pub(crate) mod normal_map;
+pub(crate) mod seen_lights;
 mod texel;
 pub(crate) mod tint;
 pub(crate) mod turns;
@@ -26,6 +27,7 @@ use glam::Vec3;
 use lightmesh_layout::constants::{
     LIGHT_TARGETS, LUMINANCE_BLUE, LUMINANCE_GREEN, LUMINANCE_RED, PART_OF_LIGHT, STRIP_OF_TARGET,
 };
+use lightmesh_layout::scene;
 use lightmesh_scene::{Facets, Falloff, Geometry, Light, LightKind, Lights, Material};
 
 use crate::accel::Hit;
@@ -40,9 +42,6 @@ use facets::{Lobe, Sight};
 use irradiance::{irradiance, nearness};
 use normal_map::{Relief, has_relief, mapped_normal, mean_normal, mirroring, normal_at};
 use tint::{Coefficients, is_tinted};
-
-/// The cosine between the way of its light and the direction to the sun of which a directional light is the same: single precision errs by less.
-const SAME_SUN: f32 = -0.999_999;
 
 /// A surface point with what formula (1) needs.
 pub(crate) struct Surface {
@@ -59,6 +58,8 @@ pub(crate) struct Surface {
     lobe: Option<Lobe>,
     /// n₁/n₂, from the side of the viewer to the other, of a surface that bends light.
     eta: Option<f32>,
+    /// Whether its mirror ray is followed.
+    followed: bool,
 }
 
 impl Surface {
@@ -78,6 +79,7 @@ impl Surface {
             coefficients: Coefficients::at(wave.scene, material, ray, cone, hit),
             shininess: material.shininess,
             lobe: None,
+            followed: wave.rays.mirrors(index),
             eta: material
                 .boundary()
                 .and_then(|glass| eta_seen(glass, ray, &wave.scene.geometry.triangles.at(hit.triangle))),
@@ -91,7 +93,7 @@ impl Surface {
         if let Some(facets) = material.faceted() {
             let Coefficients { roughness, metallic, .. } = self.coefficients;
             let facets = Facets::new(roughness).with_metallic(metallic).with_grazing(facets.grazing);
-            let (hit, followed) = (&wave.hits[ray], wave.rays.mirrors(ray));
+            let (hit, followed) = (&wave.hits[ray], self.followed);
             let cone = wave.rays.cone_of(ray).after(hit.t);
             let spread = if cone.is_point() { 0.0 } else { self.mirrored_cone(wave, hit, cone).spread.abs() };
             let sight = Sight { cosine: self.normal.dot(self.view), spread, followed };
@@ -169,7 +171,8 @@ impl Surface {
         if let Some(lobe) = &self.lobe {
             let share = if glint.seen { lobe.unmirrored } else { 1.0 };
             answer += (softened * share) * lobe.toward(self.normal, self.view, direction, glint.part / distance);
-        } else if self.coefficients.ks != Vec3::ZERO {
+        } else if self.coefficients.ks != Vec3::ZERO && !(glint.seen && self.followed) {
+            // What mirror rays see is no highlight, too.
             let mirrored = 2.0 * cosine * self.normal - direction;
             let highlight = mirrored.dot(self.view).max(0.0).powf(self.shininess);
             let highlight = if softened == cosine { highlight } else { softened / cosine * highlight };
@@ -382,12 +385,16 @@ struct Glint {
     seen: bool,
 }
 
-/// Whether mirror rays see a light: an emissive surface, or the sun of what surrounds the scene.
-pub(crate) fn is_seen(lights: &Lights, light: &Light) -> bool {
-    let sun = lights.environment.as_ref().and_then(|environment| environment.sun());
-    let is_sun = matches!((&light.kind, sun), (LightKind::Directional { direction, .. }, Some(sun))
-        if direction.dot(sun.direction) < SAME_SUN);
-    light.lamp || is_sun
+/// How rays see a light, bits of [`scene::Light`]'s constants: as an emissive surface, or the sun of what surrounds the scene, or as a surface that is
+/// none of the scene's. What a studio's key light is in mirrors, its panorama shows.
+pub(crate) fn seen_as(lights: &Lights, light: &Light) -> u32 {
+    if light.lamp || lights.surroundings_show(light) {
+        scene::Light::SEEN
+    } else if lights.is_shown(light) {
+        scene::Light::SEEN | scene::Light::SURFACE | if light.visible { scene::Light::CAMERA } else { 0 }
+    } else {
+        0
+    }
 }
 
 impl LightTargets {
@@ -402,7 +409,7 @@ impl LightTargets {
         let spread = |light: &Light| (0..LIGHT_TARGETS / 2).flat_map(|index| pair(light, index)).collect();
         LightTargets {
             points: lights.iter().map(|light| if light.has_size() { spread(light) } else { Vec::new() }).collect(),
-            seen: lights.iter().map(|light| is_seen(lights, light)).collect(),
+            seen: lights.iter().map(|light| seen_as(lights, light) != 0).collect(),
         }
     }
 

@@ -13,6 +13,8 @@ struct Surface {
     // The normal that shading uses, and the unit vector to the viewer.
     Vec3 normal, view;
     const Material *material;
+    // Whether its mirror ray is followed.
+    bool followed;
 };
 
 // Whether it has an image of normals.
@@ -24,7 +26,7 @@ DEVICE Surface surface_at(const Scene &scene, const Rays &rays, const Hit *hits,
     const Ray seen_along = ray_at(rays, ray);
     const SurfacePoint point = surface_point(seen_along, hit, corners_at(scene.triangles, hit.triangle));
     const Material *material = material_at(scene, rays, ray, hit, own);
-    Surface surface = {point, shading_normal(scene, hit, point.normal), -seen_along.direction, material};
+    Surface surface = {point, shading_normal(scene, hit, point.normal), -seen_along.direction, material, mirrors(rays, ray)};
     if (has_relief(surface)) {
         own.smooth = surface.normal;
         surface.normal = mapped_normal(tint_sources(scene), &own, sighting_of(rays, ray), hit, surface.normal);
@@ -84,7 +86,8 @@ DEVICE Vec3 reflected(const Surface &surface, const Light &light, Vec3 target) {
         return splat(0.0f);
     const float soft = softened(surface, direction, cosine);
     Vec3 answer = soft * surface.material->kd;
-    if (surface.material->ks != splat(0.0f)) {
+    // What mirror rays see is no highlight, too.
+    if (surface.material->ks != splat(0.0f) && !(light.seen && surface.followed)) {
         const Vec3 mirrored = 2.0f * cosine * surface.normal - direction;
         float highlight = powf(fmaxf(dot(mirrored, surface.view), 0.0f), surface.material->shininess);
         if (soft != cosine)

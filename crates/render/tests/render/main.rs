@@ -31,6 +31,7 @@ mod points;
 mod progress;
 mod roughness_maps;
 mod see_through;
+mod seen_lights;
 mod shading;
 mod shadow_rays;
 mod textures;

@@ -60,7 +60,8 @@ pub enum EnvironmentError {
 }
 
 impl Environment {
-    /// The panorama in a file, which may be anywhere, with the [sun](Environment::find_sun) apart.
+    /// The panorama in a file, which may be anywhere, with the [sun](Environment::find_sun) and
+    /// [other lights](Environment::find_lights) apart.
     ///
     /// # Errors
     /// [`EnvironmentError`]
@@ -100,6 +101,6 @@ impl Environment {
         let usable = |value: f32| if value > 0.0 { value.min(BRIGHTEST) } else { 0.0 };
         let texels = picture.into_raw().as_chunks::<3>().0.iter().map(|texel| texel.map(usable)).collect();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        Ok(Environment::new(name, [width, height], texels, up).find_sun())
+        Ok(Environment::new(name, [width, height], texels, up).find_sun().find_lights())
     }
 }

@@ -17,19 +17,20 @@ pub(super) struct Irradiance {
 }
 
 impl Environment {
-    /// The mean radiance over all directions, without the sun.
+    /// The mean radiance over all directions, without what is lights.
     pub fn mean(&self) -> Vec3 {
         self.all_irradiance().mean
     }
 
-    /// The irradiance of surfaces with a unit normal n, divided by π, within a few percent (Ramamoorthi, Hanrahan: *An Efficient
+    /// The irradiance of surfaces with a unit normal n, without that of lights, divided by π, within a few percent (Ramamoorthi, Hanrahan: *An Efficient
     /// Representation for Irradiance Environment Maps*, SIGGRAPH 2001): coefficients of 1, x, y, z, xy, yz, zx, z² and x² − y².
     pub fn irradiance_terms(&self) -> [Vec3; 9] {
         self.all_irradiance().terms
     }
 
     fn all_irradiance(&self) -> &Irradiance {
-        self.levels.irradiance.get_or_init(|| Irradiance::of(self))
+        let rest = self.gathered();
+        rest.levels.irradiance.get_or_init(|| Irradiance::of(rest))
     }
 
     /// What a surface that faces `normal` receives of the image, without the sun and with nothing in between.

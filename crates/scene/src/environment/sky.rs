@@ -83,12 +83,15 @@ pub struct Surroundings {
     pub environment: Environment,
     /// The sun as a light, if there is one.
     pub sun: Option<Light>,
+    /// The lights that bright regions of an image are.
+    pub discs: Vec<Light>,
 }
 
 impl From<Environment> for Surroundings {
     fn from(environment: Environment) -> Surroundings {
         let sun = environment.sun().and_then(|sun| sun.light().ok());
-        Surroundings { environment, sun }
+        let discs = environment.discs().iter().filter_map(|disc| disc.part_of_image().ok()).collect();
+        Surroundings { environment, sun, discs }
     }
 }
 

@@ -112,6 +112,7 @@ fn light_entry(scene: &Scene, light: &Light) -> LightEntry {
         size: None,
         up: None,
         one_sided: None,
+        visible: light.visible.then(|| anywhere(true)),
         intensity: Some(color(light.intensity)),
         falloff: Some(match light.falloff {
             Falloff::None => FalloffName::None,

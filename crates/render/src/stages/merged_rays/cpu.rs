@@ -10,6 +10,7 @@ use crate::accel::Hit;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
+use crate::shading::seen_lights::SeenLights;
 use crate::stages::pixel_samples::alike::{Facet, lets_through, most_mirrored};
 
 /// Number of rays per task, without the rest of the last pixel.
@@ -17,12 +18,13 @@ const BATCH: usize = 1024;
 
 /// The mirrored rays that are left, and what they see.
 pub fn merged_rays(wave: &HostWave) -> (RayList, Vec<Hit>) {
-    let pixels = &wave.rays.pixels;
+    let (pixels, seen) = (&wave.rays.pixels, SeenLights::new(wave.lights()));
     let begins = |&ray: &usize| ray == 0 || pixels[ray] != pixels[ray - 1];
     let count = pixels.len();
     let starts: Vec<usize> =
         (0..count).step_by(BATCH).map(|ray| (ray..count).find(begins).unwrap_or(count)).chain([count]).collect();
-    let parts: Vec<(RayList, Vec<Hit>)> = starts.par_windows(2).map(|ends| merge(wave, ends[0]..ends[1])).collect();
+    let parts: Vec<(RayList, Vec<Hit>)> =
+        starts.par_windows(2).map(|ends| merge(wave, &seen, ends[0]..ends[1])).collect();
     let mut left = (wave.rays.beyond(), Vec::new());
     for (rays, mut hits) in parts {
         left.0.append(rays);
@@ -32,7 +34,7 @@ pub fn merged_rays(wave: &HostWave) -> (RayList, Vec<Hit>) {
 }
 
 /// Merges the rays of some pixels.
-fn merge(wave: &HostWave, rays: Range<usize>) -> (RayList, Vec<Hit>) {
+fn merge(wave: &HostWave, seen: &SeenLights, rays: Range<usize>) -> (RayList, Vec<Hit>) {
     let list = wave.rays;
     let (mut left, mut hits) = (list.beyond(), Vec::new());
     let mut start = rays.start;
@@ -46,7 +48,7 @@ fn merge(wave: &HostWave, rays: Range<usize>) -> (RayList, Vec<Hit>) {
                 continue;
             }
             // 1. The rays on one surface.
-            let part = part_of(wave, first, &run, taken);
+            let part = part_of(wave, seen, first, &run, taken);
             taken |= part << (first - run.start);
             // 2. As one.
             let cone = list.cone_of(first);
@@ -62,9 +64,12 @@ fn merge(wave: &HostWave, rays: Range<usize>) -> (RayList, Vec<Hit>) {
 }
 
 /// The rays that ray `first` of a pixel takes: bit k stands for the k-th ray after it.
-fn part_of(wave: &HostWave, first: usize, run: &Range<usize>, taken: u32) -> u32 {
+fn part_of(wave: &HostWave, seen: &SeenLights, first: usize, run: &Range<usize>, taken: u32) -> u32 {
     let (scene, list, hit) = (wave.scene, wave.rays, &wave.hits[first]);
-    let may_merge = |ray: usize| wave.hits[ray].is_some() && list.throughs(ray) == 0;
+    // Nor do those that see lights, or would if they were as wide as all.
+    let all = (WARP as f32).sqrt();
+    let may_merge =
+        |ray: usize| wave.hits[ray].is_some() && list.throughs(ray) == 0 && seen.in_front(wave, ray, all).left == 1.0;
     if !may_merge(first) || lets_through(scene, hit) {
         return 1;
     }

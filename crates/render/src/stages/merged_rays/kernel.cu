@@ -6,6 +6,7 @@
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
+#include "shading/seen_lights.cuh"
 #include "stages/pixel_samples/alike.cuh"
 
 // What ray number `ray` sees.
@@ -15,8 +16,10 @@ DEVICE Facet facet_of_ray(const MergedRays &args, unsigned ray, const Hit &hit) 
     return facet_of(args.scene, along, hit, args.spacing[0] + args.spacing[1] * length(position - args.rays.view.origin));
 }
 
+// Nor do those that see lights, or would if they were as wide as all.
 DEVICE bool may_merge(const MergedRays &args, unsigned ray, const Hit &hit) {
-    return hit.triangle != Hit::NONE && throughs_of(args.rays, ray) == 0;
+    return hit.triangle != Hit::NONE && throughs_of(args.rays, ray) == 0 &&
+           in_front(args.scene, args.rays, args.hits, ray, sqrtf((float)WARP)).left == 1.0f;
 }
 
 // The sum of the weights of the rays of a part: bit k stands for the k-th ray after the first.

@@ -6,7 +6,7 @@
 //!    ([`alike`](super::pixel_samples::alike)), unless too much of what this surface mirrors would reach the pixel by a single ray.
 //! 2. Its weight is the sum of theirs, and its cone covers what all of them see of a texture.
 //!
-//! Rays that went through a surface stay apart.
+//! Rays that went through a surface stay apart, and those that see lights.
 
 pub(crate) mod cpu;
 pub(crate) mod cuda;

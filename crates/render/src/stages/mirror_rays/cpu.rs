@@ -12,6 +12,7 @@ use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
 use crate::shading::facets::blurred;
+use crate::shading::seen_lights::SeenLights;
 use crate::shading::{Surface, material_of};
 
 /// Number of rays per task.
@@ -21,7 +22,8 @@ const BATCH: usize = 1024;
 pub fn mirror_rays(wave: &HostWave) -> RayList {
     let count = wave.hits.len();
     let starts: Vec<usize> = (0..count).step_by(BATCH).collect();
-    let of_batch = |start: usize| onward(wave, start..count.min(start + BATCH));
+    let seen = SeenLights::new(wave.lights());
+    let of_batch = |start: usize| onward(wave, &seen, start..count.min(start + BATCH));
     let parts: Vec<RayList> = starts.into_par_iter().map(of_batch).collect();
     let mut next = beyond(wave.rays);
     parts.into_iter().for_each(|part| next.append(part));
@@ -34,7 +36,7 @@ fn beyond(list: &RayList) -> RayList {
 }
 
 /// The rays that go on from those in `range`.
-fn onward(wave: &HostWave, range: Range<usize>) -> RayList {
+fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
     let (list, has_cones) = (wave.rays, wave.rays.has_cones());
     let mut next = beyond(list);
     let has_samples = !list.samples.is_empty() || wave.scene.lets_through();
@@ -51,9 +53,10 @@ fn onward(wave: &HostWave, range: Range<usize>) -> RayList {
         let surface = Surface::new(wave, index);
         let (hit, throughs) = (&wave.hits[index], list.throughs(index));
         let cone = || list.cone_of(index).after(hit.t);
+        let reaches = seen.in_front(wave, index, 1.0).left * list.weight(index);
 
         // 1. Through the surface.
-        let weight = list.weight(index) * surface.coefficients.transmittance;
+        let weight = reaches * surface.coefficients.transmittance;
         if weight.max_element() >= LEAST_ONWARD && throughs < MOST_THROUGHS {
             let (origin, direction) = surface.onward();
             let onward = Ray { origin, direction, t_max: f32::INFINITY };
@@ -61,7 +64,7 @@ fn onward(wave: &HostWave, range: Range<usize>) -> RayList {
         }
 
         // 2. Mirrored.
-        let weight = list.weight(index) * surface.coefficients.mirrored;
+        let weight = reaches * surface.coefficients.mirrored;
         if weight.max_element() >= LEAST_ONWARD && list.mirrors(index) {
             let direction = surface.mirrored().normalize();
             let onward = Ray { origin: surface.point.origin, direction, t_max: f32::INFINITY };

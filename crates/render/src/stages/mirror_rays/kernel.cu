@@ -5,7 +5,7 @@
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
-#include "shading/shading.cuh"
+#include "shading/seen_lights.cuh"
 
 // The shares of what is behind the surface point of a ray, and in the mirror there, that reach the pixel; zero where no ray goes on.
 struct Shares {
@@ -21,7 +21,7 @@ DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
         return none;
     Material own;
     const Material *material = material_at(args.scene, args.rays, ray, hit, own);
-    const Vec3 weight = weight_of(args.rays, ray);
+    const Vec3 weight = in_front(args.scene, args.rays, args.hits, ray, 1.0f).left * weight_of(args.rays, ray);
     const Vec3 through = weight * material->transmittance, mirrored = weight * material->mirrored;
     const unsigned throughs = throughs_of(args.rays, ray);
     const bool goes = max_element(through) >= LEAST_ONWARD && throughs < MOST_THROUGHS;

@@ -9,6 +9,7 @@ use crate::data::wave::HostWave;
 use crate::shading::ambient::AmbientLight;
 use crate::shading::environment::missed;
 use crate::shading::ids::ids_of;
+use crate::shading::seen_lights::SeenLights;
 use crate::shading::{LightTargets, Surface, catches, luminance};
 
 /// Number of rays per task.
@@ -34,17 +35,19 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&
             }
         });
     });
+    let seen = SeenLights::new(wave.lights());
     if visibility.lights.end == wave.lights().len() {
         let caught = if wave.scene.catches() { catch_shadows(wave, &targets, &ambient, &mut sums) } else { Vec::new() };
+        let left = seen.put_in_front(wave, &mut sums);
         let keeps = picture.caught.is_some();
         for (ray, (&pixel, &sum)) in wave.rays.pixels.iter().zip(&sums).enumerate() {
-            picture.add(pixel, weight_in_film(wave, keeps, ray) * sum);
+            picture.add(pixel, weight_in_film(wave, &seen, keeps, ray) * sum);
         }
         if keeps {
-            keep_what_is_behind(wave, &caught, picture);
+            keep_what_is_behind(wave, &caught, &left, picture);
         }
     }
-    add_light_groups(wave, visibility, &targets, &ambient, &sums, picture);
+    add_light_groups(wave, visibility, (&targets, &seen), &ambient, &sums, picture);
     if visibility.lights.end != wave.lights().len() {
         picture.sums = sums;
     }
@@ -60,21 +63,23 @@ fn mean(color: Vec3) -> f32 {
     color.element_sum() / 3.0
 }
 
-/// Adds how much of what is behind everything the camera's rays show, those of shadow catchers as much as they `caught`.
-fn keep_what_is_behind(wave: &HostWave, caught: &[f32], picture: &mut Picture) {
+/// Adds how much of what is behind everything the camera's rays show, those of shadow catchers as much as they `caught`; lights in front leave a share.
+fn keep_what_is_behind(wave: &HostWave, caught: &[f32], left: &[f32], picture: &mut Picture) {
     for (ray, &pixel) in wave.rays.pixels.iter().enumerate().filter(|(ray, _)| !wave.rays.is_mirrored(*ray)) {
         let passed = !wave.sees(ray) && wave.rays.throughs(ray) > 0;
         let share = if passed { 1.0 } else { caught.get(ray).copied().unwrap_or(0.0) };
+        let share = left.get(ray).map_or(share, |left| left * share);
         picture.catch(pixel, mean(wave.rays.weight(ray)) * share);
     }
 }
 
 /// The share of a ray's radiance that reaches its pixel. What is behind everything is seen on shadow catchers, and by rays that went through all
-/// surfaces: where the image `keeps` how much of it there is, for it to be taken out again, filters do not colour it.
-fn weight_in_film(wave: &HostWave, keeps: bool, ray: usize) -> Vec3 {
+/// surfaces: where the image `keeps` how much of it there is, for it to be taken out again, filters do not colour it, unless a light is in front.
+fn weight_in_film(wave: &HostWave, seen: &SeenLights, keeps: bool, ray: usize) -> Vec3 {
     let (rays, weight) = (wave.rays, wave.rays.weight(ray));
     let through = keeps && rays.throughs(ray) > 0 && !rays.is_mirrored(ray);
-    if through && (!wave.sees(ray) || catches(wave, ray)) { Vec3::splat(mean(weight)) } else { weight }
+    let is_behind = through && (!wave.sees(ray) || catches(wave, ray));
+    if is_behind && seen.in_front(wave, ray, 1.0).left == 1.0 { Vec3::splat(mean(weight)) } else { weight }
 }
 
 /// Formula (1) without its last term: the terms of a group of lights are added to those before.
@@ -109,7 +114,7 @@ fn add_group(
 fn add_light_groups(
     wave: &HostWave,
     visibility: &Visibility,
-    targets: &LightTargets,
+    (targets, seen): (&LightTargets, &SeenLights),
     ambient: &AmbientLight,
     sums: &[Vec3],
     picture: &mut Picture,
@@ -120,8 +125,10 @@ fn add_light_groups(
     let planes = lights.len() + 1;
     let mut groups: Vec<&mut Vec<[f32; 3]>> = light_groups_of(layers).skip(lights.start).collect();
     // The last one belongs to no light.
-    let rest = groups.len() - 1;
-    groups.swap(lights.len(), rest);
+    let last = groups.len() - 1;
+    groups.swap(lights.len(), last);
+    let rest = lights.len();
+    let shows_sum = |ray: usize| wave.sees(ray) && catches(wave, ray);
     for (part, sums) in sums.chunks((TERMS / planes).max(1)).enumerate() {
         let first = part * (TERMS / planes).max(1);
         let mut terms = vec![Vec3::ZERO; planes * sums.len()];
@@ -129,15 +136,29 @@ fn add_light_groups(
             |(batch, (terms, sums))| {
                 wave.job.piece(0, || {
                     for (index, (terms, &sum)) in terms.chunks_exact_mut(planes).zip(sums).enumerate() {
-                        by_light(wave, visibility, targets, ambient, first + batch * BATCH + index, sum, terms);
+                        let ray = first + batch * BATCH + index;
+                        by_light(wave, visibility, targets, ambient, ray, sum, terms);
+                        if !shows_sum(ray) {
+                            let left = seen.in_front(wave, ray, 1.0).left;
+                            terms.iter_mut().for_each(|term| *term *= left);
+                        }
                     }
                 });
             },
         );
         for (ray, terms) in (first..).zip(terms.chunks_exact(planes)) {
-            let (pixel, weight) = (wave.rays.pixels[ray] as usize - start, weight_in_film(wave, keeps, ray));
+            let (pixel, weight) = (wave.rays.pixels[ray] as usize - start, weight_in_film(wave, seen, keeps, ray));
             for (plane, &term) in groups.iter_mut().zip(terms) {
                 plane[pixel] = (Vec3::from_array(plane[pixel]) + weight * term).to_array();
+            }
+            // Lights in front of all that.
+            if !seen.is_empty() && !shows_sum(ray) {
+                seen.each(wave, ray, 1.0, |light, radiance| {
+                    if let Some(plane) = (light as usize).checked_sub(lights.start).filter(|&light| light < rest) {
+                        let plane = &mut groups[plane][pixel];
+                        *plane = (Vec3::from_array(*plane) + weight * radiance).to_array();
+                    }
+                });
             }
         }
     }

@@ -4,6 +4,7 @@
 #include "cuda/warp.cuh"
 #include "shading/environment.cuh"
 #include "shading/ids.cuh"
+#include "shading/seen_lights.cuh"
 #include "shading/shading.cuh"
 
 // The share of a light for a ray.
@@ -18,21 +19,29 @@ DEVICE Vec3 color_of(const Shade &args, unsigned light, unsigned ray) {
     return args.passed[(unsigned long long)light * args.rays.count + ray];
 }
 
-// The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
-DEVICE float spread_of(const Shade &args, unsigned ray) {
+// The root of the number of samples that are shaded with a ray.
+DEVICE float root_of_samples(const Shade &args, unsigned ray) {
     unsigned samples = 1;
     if (args.rays.list != nullptr)
         samples = max(__popc(__ldg(&args.rays.list[ray].shared)), 1);
     else if (args.rays.list == nullptr && args.samples != nullptr)
         samples = args.sample_count;
-    return fabsf(cone_of(args.rays, ray).spread) * sqrtf((float)samples);
+    return sqrtf((float)samples);
+}
+
+// The angle of the cone around a ray; of those of all samples that are shaded with it, if there are several.
+DEVICE float spread_of(const Shade &args, unsigned ray) { return fabsf(cone_of(args.rays, ray).spread) * root_of_samples(args, ray); }
+
+// What is in front of what a ray sees.
+DEVICE InFront in_front(const Shade &args, unsigned ray) {
+    return in_front(args.scene, args.rays, args.hits, ray, root_of_samples(args, ray));
 }
 
 // The mean of three channels.
 DEVICE float mean(Vec3 color) { return (color.x + color.y + color.z) / 3.0f; }
 
 // The share of a ray's radiance that reaches its pixel. What is behind everything is seen on shadow catchers, and by rays that went through all
-// surfaces: where the image keeps how much of it there is, for it to be taken out again, filters do not colour it.
+// surfaces: where the image keeps how much of it there is, for it to be taken out again, filters do not colour it, unless a light is in front.
 DEVICE Vec3 weight_in_film(const Shade &args, unsigned ray) {
     const Vec3 weight = weight_of(args.rays, ray);
     if (args.caught == nullptr || throughs_of(args.rays, ray) == 0 || is_mirrored(args.rays, ray))
@@ -40,7 +49,7 @@ DEVICE Vec3 weight_in_film(const Shade &args, unsigned ray) {
     const unsigned triangle = load_hit(args.hits, ray).triangle;
     const bool sees = triangle != Hit::NONE;
     const bool catches = sees && args.scene.materials[material_index(args.scene, triangle)].catcher;
-    return !sees || catches ? splat(mean(weight)) : weight;
+    return (!sees || catches) && in_front(args, ray).left == 1.0f ? splat(mean(weight)) : weight;
 }
 
 // What a ray that hits nothing sees: the background or the environment.
@@ -132,6 +141,18 @@ COLD Vec3 catch_shadow(const Shade &args, unsigned ray, unsigned long long place
     return share * missed(args, ray);
 }
 
+// Puts the lights in front of what a ray sees: they leave a share of it, also of what is behind everything.
+DEVICE Vec3 put_in_front(const Shade &args, unsigned ray, unsigned long long place, Vec3 radiance) {
+    const InFront front = in_front(args, ray);
+    if (!(front.left < 1.0f))
+        return radiance;
+    if (args.several && args.ray_caught != nullptr)
+        args.ray_caught[ray] *= front.left;
+    else if (!args.several && args.caught != nullptr && !is_mirrored(args.rays, ray))
+        args.caught[place] *= front.left;
+    return front.left * radiance + front.radiance;
+}
+
 KERNEL(shade, Shade, BLOCK, 4) {
     unsigned ray;
     if (!ray_of_thread(args.rays, args.first_block + blockIdx.x, threadIdx.x, ray))
@@ -159,6 +180,8 @@ KERNEL(shade, Shade, BLOCK, 4) {
         if (fills)
             fill_layers(args, ray, surface, place);
     }
+    if (last && args.scene.seen_lights)
+        radiance = put_in_front(args, ray, place, radiance);
     if (!last || args.several) {
         sum = radiance;
         return;
@@ -209,37 +232,52 @@ DEVICE void add_to_group(const Shade &args, unsigned group, unsigned long long p
     sum = sum + radiance;
 }
 
+// Adds what a ray sees of each light of this group in front of all else.
+DEVICE void add_in_front(const Shade &args, unsigned ray, unsigned long long place) {
+    if (!args.scene.seen_lights)
+        return;
+    const Vec3 weight = weight_in_film(args, ray);
+    const Beam beam = beam_of(args.rays, args.hits, ray, root_of_samples(args, ray));
+    LightsInFront walk = in_front_of_all();
+    unsigned light;
+    Vec3 radiance;
+    while (next_in_front(args.scene, beam, walk, light, radiance))
+        if (light >= args.first_light && light < args.end_light)
+            add_to_group(args, light, place, weight * radiance);
+}
+
 // Adds what a ray gets from each light of this group by itself, and what belongs to no light.
 DEVICE void add_by_light(const Shade &args, unsigned ray, unsigned long long place) {
     const unsigned rest = args.scene.light_count;
     const bool first = args.first_light == 0, last = args.end_light == args.scene.light_count;
     const Vec3 weight = weight_in_film(args, ray);
+    const float left = in_front(args, ray).left;
     if (load_hit(args.hits, ray).triangle == Hit::NONE) {
         if (first)
-            add_to_group(args, rest, place, weight * missed(args, ray));
+            add_to_group(args, rest, place, weight * (left * missed(args, ray)));
+        add_in_front(args, ray, place);
         return;
     }
-    if (!first && !last && !sees_any(args, ray))
-        return;
     Material own;
     Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
     if (args.samples != nullptr) {
         share_tint(args, ray, own);
         share_normal(args.scene, args.rays, ray, samples_of(args), surface);
     }
-    // A shadow catcher shows what is behind it.
+    // A shadow catcher shows what is behind it; its sum also has what is in front of it.
     if (args.catches && surface.material->catcher) {
         if (last)
             add_to_group(args, rest, place, weight * args.sums[ray]);
         return;
     }
     if (first)
-        add_to_group(args, rest, place, weight * unlit(args, ray, surface));
+        add_to_group(args, rest, place, weight * (left * unlit(args, ray, surface)));
     const float reach = scene_reach(args.scene, surface.point.origin);
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
         if (share_of(args, light, ray) > 0.0f)
-            add_to_group(args, light, place, weight * shown(surface, args.scene, light, reach, color_of(args, light, ray), args.weighed));
+            add_to_group(args, light, place, weight * (left * shown(surface, args.scene, light, reach, color_of(args, light, ray), args.weighed)));
     }
+    add_in_front(args, ray, place);
 }
 
 // The radiance of each light by itself: rays of a pixel in their order, as above.

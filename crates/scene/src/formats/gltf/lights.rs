@@ -48,6 +48,7 @@ pub(super) fn read(
         falloff: if own.no_falloff { Falloff::None } else { Falloff::InverseSquare },
         surface: None,
         lamp: false,
+        visible: false,
         motion: None,
     };
     Ok(Some(light.with_one_sided(own.one_sided)))

@@ -31,6 +31,7 @@ pub(super) fn read(source: &Source, table: &Spanned<LightEntry>) -> Result<(Ligh
         },
         surface: None,
         lamp: false,
+        visible: entry.visible.as_ref().is_some_and(|visible| *visible.get_ref()),
         motion: None,
     };
     let one_sided = entry.one_sided.as_ref().is_none_or(|one_sided| *one_sided.get_ref());
@@ -93,14 +94,17 @@ fn refuse_foreign_keys(source: &Source, table: &Spanned<LightEntry>) -> Result<(
         ("size", entry.size.is_some()),
         ("up", entry.up.is_some()),
         ("one_sided", entry.one_sided.is_some()),
+        ("visible", entry.visible.is_some()),
     ]);
     let taken: &[&str] = match entry.kind.get_ref() {
         LightKindName::Point => &["position", "spread"],
-        LightKindName::Directional => &["direction", "angle"],
-        LightKindName::Spot => &["position", "direction", "target", "inner", "outer", "radius"],
-        LightKindName::Sphere => &["position", "radius"],
-        LightKindName::Disk => &["position", "direction", "target", "normal", "radius", "one_sided"],
-        LightKindName::Rectangle => &["position", "direction", "target", "u", "v", "size", "up", "one_sided"],
+        LightKindName::Directional => &["direction", "angle", "visible"],
+        LightKindName::Spot => &["position", "direction", "target", "inner", "outer", "radius", "visible"],
+        LightKindName::Sphere => &["position", "radius", "visible"],
+        LightKindName::Disk => &["position", "direction", "target", "normal", "radius", "one_sided", "visible"],
+        LightKindName::Rectangle => {
+            &["position", "direction", "target", "u", "v", "size", "up", "one_sided", "visible"]
+        }
     };
     match there.iter().find(|key| !taken.contains(key)) {
         None => Ok(()),

@@ -245,6 +245,9 @@ pub(crate) struct LightEntry {
     /// the cosine. If false, evenly to both sides, with `intensity` in all directions. Default: true.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) one_sided: Option<Spanned<bool>>,
+    /// Lights with an area: the camera sees it, as mirrors and rays through glass always do. Default: false.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) visible: Option<Spanned<bool>>,
     /// Default: 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) intensity: Option<Spanned<Color>>,

@@ -9,7 +9,7 @@ fn surroundings_replace_suns_and_what_stood_for_them() {
     let mut lights = Lights::from(vec![sun().named("old"), Light::point(Vec3::Y)]);
     (lights.ambient, lights.background) = (Some(Vec3::ONE), Some(Vec3::Z));
     let environment = Environment::new("", [1; 2], vec![[0.25, 0.5, 1.0]], lightmesh_scene::Up::Y);
-    lights.surround(Surroundings { environment, sun: Some(sun().named("new")) });
+    lights.surround(Surroundings { environment, sun: Some(sun().named("new")), discs: Vec::new() });
     let names: Vec<_> = lights.iter().map(|light| light.name.as_str()).collect();
     assert_eq!(names, ["new", ""]);
     assert_eq!((lights.ambient, lights.background), (None, None));

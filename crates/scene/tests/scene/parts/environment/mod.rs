@@ -103,12 +103,68 @@ fn a_sun_in_an_image_becomes_a_disc_with_its_light() {
     assert_eq!(Environment::new("", size, texels, Up::Y).find_sun().sun(), None);
 }
 
+/// A dark panorama with a bright box, given by columns and rows, and what it sends in all.
+fn with_box(columns: std::ops::Range<u32>, rows: std::ops::Range<u32>) -> Environment {
+    let texel = |index: u32| {
+        let is_bright = columns.contains(&(index % 256)) && rows.contains(&(index / 256));
+        if is_bright { [12.0, 11.0, 9.0] } else { [0.05; 3] }
+    };
+    Environment::new("", [256, 128], (0..256 * 128).map(texel).collect(), Up::Y)
+}
+
+#[test]
+fn bright_regions_of_an_image_become_discs_with_their_light() {
+    // A box, and one across the image's ends.
+    for (columns, rows) in [(70..120, 30..55), (0..12, 50..60)] {
+        let whole = with_box(columns, rows);
+        let found = whole.clone().find_lights();
+        assert_eq!(found.texels(), whole.texels(), "it is seen as it is");
+        let discs = found.discs();
+        assert!((2..=8).contains(&discs.len()), "{}", discs.len());
+        // Nothing is lost and nothing is counted twice.
+        let sent: Vec3 = discs.iter().map(|disc| disc.irradiance()).sum();
+        let (before, after) = (4.0 * PI * whole.mean(), 4.0 * PI * found.gathered().mean() + sent);
+        assert!((after / before - 1.0).abs().max_element() < 1e-3, "{after}, not {before}");
+        assert!(near(found.gathered().mean() / 0.05, Vec3::ONE), "the rest is even");
+        // They are where it is: a surface that faces the box receives the same.
+        let Surroundings { environment, discs: lights, sun } = found.into();
+        assert_eq!((lights.len(), sun), (environment.discs().len(), None));
+        let middle = environment.discs()[0].direction;
+        let received = |light: &lightmesh_scene::Light| {
+            let LightKind::Directional { direction, .. } = light.kind else { panic!("{light:?}") };
+            PI * middle.dot(-direction).max(0.0) * light.intensity
+        };
+        let lit: Vec3 = lights.iter().map(received).sum::<Vec3>() + environment.gathered().irradiance(middle);
+        assert!((lit / whole.irradiance(middle) - 1.0).abs().max_element() < 0.01, "{lit}");
+    }
+    let even = with_box(0..0, 0..0);
+    assert_eq!(even.clone().find_lights(), even);
+    // A lamp that gives less than a hundredth of all light.
+    let mut texels = vec![[0.5; 3]; 256 * 128];
+    texels[256 * 40 + 9] = [60.0; 3];
+    assert_eq!(Environment::new("", [256, 128], texels, Up::Y).find_lights().discs(), []);
+}
+
+#[test]
+fn lights_of_an_image_turn_and_grow_with_it() {
+    let first = with_box(70..120, 30..55).find_lights();
+    let turned = first.clone().turned(90.0).scaled(2.0);
+    assert!(near(turned.mean(), 2.0 * first.mean()));
+    assert_eq!(turned.discs().len(), first.discs().len());
+    for (disc, before) in turned.discs().iter().zip(first.discs()) {
+        // Clockwise: what was in the north is in the east.
+        let Vec3 { x, y, z } = before.direction;
+        assert!(near(disc.direction, Vec3::new(-z, y, x)), "{disc:?}, {before:?}");
+        assert_eq!(disc.radiance, 2.0 * before.radiance);
+    }
+}
+
 #[test]
 fn a_clear_sky_is_bright_around_its_sun_and_blue_on_the_other_side() {
     let sky = |up| {
         Sky { north: 30.0, ..Sky::clear(SunPosition { elevation: 35.0, azimuth: 120.0 }) }.surroundings(up).unwrap()
     };
-    let Surroundings { environment, sun } = sky(Up::Y);
+    let Surroundings { environment, sun, .. } = sky(Up::Y);
     let disc = environment.sun().unwrap();
     let (azimuth, elevation) = (150.0f32.to_radians(), 35.0f32.to_radians());
     let expected = Vec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), -azimuth.cos() * elevation.cos());
@@ -146,7 +202,7 @@ fn a_clear_sky_is_bright_around_its_sun_and_blue_on_the_other_side() {
 #[test]
 fn other_skies_are_what_they_say() {
     let uniform = Sky { strength: 2.0, ..Sky::new(SkyKind::Uniform { color: Vec3::new(0.1, 0.2, 0.3) }) };
-    let Surroundings { environment, sun } = uniform.surroundings(Up::Y).unwrap();
+    let Surroundings { environment, sun, .. } = uniform.surroundings(Up::Y).unwrap();
     assert!(near(environment.mean(), Vec3::new(0.2, 0.4, 0.6)) && sun.is_none());
     let gradient = SkyKind::Gradient { zenith: Vec3::Z, horizon: Vec3::ONE, ground: Vec3::X };
     let map = Sky::new(gradient).surroundings(Up::Z).unwrap().environment;

@@ -328,7 +328,7 @@ const MISTAKES: [(&str, &str); 40] = [
     ("[[light]]\nkind = \"directional\"\nangle = -0.5\ndirection = [0, -1, 0]", "angle = -0.5 is not between 0 and 179, room.toml:3; "),
     ("[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\nangle = nan", "angle = nan is not finite, room.toml:4; "),
     ("[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\nangle = 5", "kind = \"spot\" does not take `angle`, room.toml:2; it takes position, direction, target, inner, outer"),
-    ("[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\nspread = 5", "kind = \"directional\" does not take `spread`, room.toml:2; it takes direction, angle, name"),
+    ("[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\nspread = 5", "kind = \"directional\" does not take `spread`, room.toml:2; it takes direction, angle, visible, name"),
     ("[[light]]\nkind = \"sphere\"\nposition = [0, 0, 0]", "key `radius` is missing, room.toml:1; "),
     ("[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\ninner = 50", "inner = 50 is above outer = 45, room.toml:5; "),
     ("[[light]]\nkind = \"rectangle\"\nposition = [0, 0, 0]\nu = [1, 0, 0]\nv = [1, 1, 0]", "v = [1, 1, 0] is not at a right angle to `u`, room.toml:5; "),
