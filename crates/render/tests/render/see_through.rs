@@ -142,7 +142,8 @@ fn faint_ways_between_panes_count_as_much_as_they_do() {
             let mean = colors.clone().sum::<Vec3>() / colors.len() as f32;
             let most = colors.map(|color| (color - expected).abs().max_element()).fold(0.0, f32::max);
             assert!((mean - expected).abs().max_element() < 1e-3, "{count}, {aa}: {mean} instead of {expected}");
-            assert!(most < 0.03, "{count}, {aa}: a pixel errs by {most}");
+            // Up to 64 depths with a standard deviation of 0.4/256 each.
+            assert!(most < 0.08, "{count}, {aa}: a pixel errs by {most}");
         }
     }
 }

@@ -10,8 +10,9 @@
 //!
 //! with the weight T in place of w: systematic sampling. The offset o depends on the pixel's place and the depth, and is evenly distributed: a ray goes
 //! on with a probability of w/T, so that the mean over pixels is what it was. Neighbours have offsets of a sequence of low discrepancy, multiples of
-//! irrational numbers without their whole parts, and err in different directions. The sums of weights before and after each ray differ by less than T, so the error of a pixel is
-//! less than T times what the radiances of these rays, in their order, change from one to the next.
+//! irrational numbers without their whole parts, and err in different directions. The sums of weights before each
+//! ray differ by less than T, so that at each depth the error of a pixel is less than T times the brightest radiance of these rays and its changes
+//! from one to the next.
 //!
 //! Twin: `kernel.cu`. Weights are whole numbers of T 2⁻¹⁶, so that sums are the same in any order.
 
