@@ -295,7 +295,25 @@ constants! {
     LARGEST_EXPONENT: f32 = 87.0;
     /// A ray goes through so many surfaces.
     MOST_THROUGHS: u32 = 64;
-    /// A ray goes on at a surface, through it or mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
+    /// Where surfaces let rays through, a ray always goes on if at least this share of what it sees reaches the pixel; others are thinned.
+    LEAST_THICK: f32 = 1.0 / 256.0;
+    /// Shares are counted in parts of that: so many bits.
+    THIN_BITS: u32 = 16;
+    /// Less is nothing: one of these parts.
+    LEAST_THIN: f32 = 1.0 / 16_777_216.0;
+    /// By how much the offset of thinning differs between neighbours in a row, as a share of 2³²: 1/ρ, with ρ³ = ρ + 1.
+    THIN_ACROSS: u32 = 0xc13f_a9a9;
+    /// In a column: 1/ρ².
+    THIN_DOWN: u32 = 0x91e1_0da5;
+    /// From depth to depth: the golden ratio.
+    THIN_DEEPER: u32 = 0x9e37_79b9;
+    /// Of surfaces without diffuse reflection it is asked what panes leave of a light if its highlight is at least that much of a pixel.
+    LEAST_SHOWN: f32 = 1.0 / 262_144.0;
+    /// So many hits of a shadow ray are found at once.
+    HITS_AT_ONCE: u32 = 16;
+    /// The least cosine at which a shadow ray counts as meeting a pane.
+    LEAST_STEEPNESS: f32 = 1.0 / 64.0;
+    /// Where all surfaces are opaque, a ray goes on at a surface, mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
     /// no code of an image.
     LEAST_ONWARD: f32 = 1.0 / 4096.0;
     /// Surface points of which a small share reaches the pixel follow fewer samples of lights through panes: levels of that.

@@ -326,7 +326,7 @@ records! {
         quantiles: [f32; 64],
     }
 
-    /// `mirror_rays_count` and `mirror_rays_emit`: one thread per ray.
+    /// `mirror_rays_thin`, `mirror_rays_count` and `mirror_rays_emit`: one thread per ray.
     MirrorRays {
         /// The scene.
         scene: Scene,
@@ -336,6 +336,8 @@ records! {
         hits: In<Hit>,
         /// Number of rays that go on from each block of 256 rays; after the scan, of all blocks before it.
         counts: Out<u32>,
+        /// The shares of thin rays that go on from each ray; null if none are thinned.
+        thin: Out<u32>,
         /// The rays that go on, in the order of the rays: of each first the one that goes through, then the one that is mirrored.
         onward: Out<ListedRay>,
         /// Their cones; null if textures are not filtered.

@@ -31,6 +31,13 @@ DEVICE SurfacePoint surface_point(const Ray &ray, const Hit &hit, const Corners 
 // Where a ray goes on that the surface lets through.
 DEVICE Vec3 behind(const SurfacePoint &point) { return 2.0f * point.position - point.origin; }
 
+// How far behind a hit other surfaces count that a straight ray meets, in units of its parameter.
+DEVICE float gap_behind(const Ray &ray, const Hit &hit, const Corners &corners) {
+    const float error = GAMMA_32 * max_element(abs(corners.a) + abs(corners.b) + abs(corners.c));
+    const float steep = fabsf(dot(surface_point(ray, hit, corners).normal, ray.direction));
+    return error / fmaxf(steep, LEAST_STEEPNESS * length(ray.direction));
+}
+
 // The surface point that ray number `ray` sees; the ray must have hit something.
 DEVICE SurfacePoint surface_point_of(const Scene &scene, const Rays &rays, const Hit *hits, unsigned ray) {
     const Hit hit = load_hit(hits, ray);

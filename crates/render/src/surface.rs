@@ -1,7 +1,7 @@
 //! From a hit to the surface point that all further steps start from.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{GAMMA_32, LEAST_SMOOTH_SQUARE, LEAST_SQUARE};
+use lightmesh_layout::constants::{GAMMA_32, LEAST_SMOOTH_SQUARE, LEAST_SQUARE, LEAST_STEEPNESS};
 use lightmesh_scene::Mesh;
 
 use crate::accel::{Hit, Ray, Triangle};
@@ -52,6 +52,16 @@ impl SurfacePoint {
     pub(crate) fn behind(&self) -> Vec3 {
         2.0 * self.position - self.origin
     }
+}
+
+/// How far behind a hit other surfaces count that a straight ray meets, in units of its parameter: both halves of a quadrangle may be hit at
+/// their common edge, and rounding moves a hit as much as [`SurfacePoint::behind`] does, along the normal. Rays that graze a surface are taken to
+/// be a little steeper, lest they skip what is far behind it.
+pub(crate) fn gap_behind(ray: &Ray, hit: &Hit, triangle: &Triangle) -> f32 {
+    let [a, b, c] = triangle.corners();
+    let error = GAMMA_32 * (a.abs() + b.abs() + c.abs()).max_element();
+    let steep = SurfacePoint::new(ray, hit, triangle).normal.dot(ray.direction).abs();
+    error / steep.max(LEAST_STEEPNESS * ray.direction.length())
 }
 
 /// The normals of a triangle's corners, and what they are between them.

@@ -10,6 +10,7 @@ use super::approach::{Approach, NearRay};
 use super::distinct::distinct;
 use super::sieve::{Sieve, Take};
 use super::triangle::RayShear;
+use super::visit::{All, Visitor};
 use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
 
@@ -64,6 +65,18 @@ impl Accelerator for BruteForce {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
         for (hit, ray) in hits.iter_mut().zip(rays) {
             *hit = self.approach.ray(ray).map_or(Hit::MISS, |near| near.finish(self.closest(&near)));
+        }
+    }
+
+    fn all_hits(&self, rays: &[Ray], take: &mut dyn FnMut(usize, &[Hit])) {
+        let mut hits = Vec::new();
+        for (number, ray) in rays.iter().enumerate() {
+            let Some(near) = self.approach.ray(ray) else { continue };
+            let mut all = All::new(&near, &self.coverage, &mut hits);
+            self.triangles.iter().for_each(|triangle| {
+                all.triangle(triangle);
+            });
+            all.finish(&near, |hits| take(number, hits));
         }
     }
 

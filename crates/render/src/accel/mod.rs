@@ -142,6 +142,9 @@ pub trait Accelerator: Send + Sync {
     /// Closest hit of every ray. `hits` is as long as `rays` and is overwritten.
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]);
 
+    /// Hands all hits of each ray that has any to `take`, with the number of the ray: in the order of `t`, among equal ones of the index.
+    fn all_hits(&self, rays: &[Ray], take: &mut dyn FnMut(usize, &[Hit]));
+
     /// For every segment, whether anything blocks it. `occluded` is as long as `segments` and is overwritten.
     fn occluded(&self, segments: &[Ray], occluded: &mut [bool]);
 

@@ -57,6 +57,52 @@ impl Visitor for Closest<'_> {
     }
 }
 
+/// Collects all hits.
+pub(super) struct All<'a> {
+    coverage: &'a Coverage,
+    shear: RayShear,
+    t_max: f32,
+    hits: &'a mut Vec<Hit>,
+}
+
+impl<'a> All<'a> {
+    /// They take the place of what is in `hits`.
+    #[inline(always)]
+    pub(super) fn new(ray: &NearRay, coverage: &'a Coverage, hits: &'a mut Vec<Hit>) -> All<'a> {
+        hits.clear();
+        All { coverage, shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hits }
+    }
+
+    /// Hands over the hits of `ray`, each once and in order, if there are any.
+    pub(super) fn finish(self, ray: &NearRay, take: impl FnOnce(&[Hit])) {
+        let hits = self.hits;
+        if hits.is_empty() {
+            return;
+        }
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+        hits.dedup_by_key(|hit| hit.triangle);
+        hits.iter_mut().for_each(|hit| *hit = ray.finish(*hit));
+        take(hits);
+    }
+}
+
+impl Visitor for All<'_> {
+    #[inline(always)]
+    fn triangle(&mut self, triangle: &Triangle) -> bool {
+        if let Some(hit) = self.shear.hit(triangle, self.t_max)
+            && self.coverage.has(triangle, &hit)
+        {
+            self.hits.push(hit);
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.t_max
+    }
+}
+
 /// Searches for any hit.
 pub(super) struct Any<'a> {
     coverage: &'a Coverage,

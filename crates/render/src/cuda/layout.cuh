@@ -196,7 +196,25 @@
 #define LARGEST_EXPONENT 0x1.5cp6f
 // A ray goes through so many surfaces.
 #define MOST_THROUGHS 64u
-// A ray goes on at a surface, through it or mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
+// Where surfaces let rays through, a ray always goes on if at least this share of what it sees reaches the pixel; others are thinned.
+#define LEAST_THICK 0x1p-8f
+// Shares are counted in parts of that: so many bits.
+#define THIN_BITS 16u
+// Less is nothing: one of these parts.
+#define LEAST_THIN 0x1p-24f
+// By how much the offset of thinning differs between neighbours in a row, as a share of 2³²: 1/ρ, with ρ³ = ρ + 1.
+#define THIN_ACROSS 0xc13fa9a9u
+// In a column: 1/ρ².
+#define THIN_DOWN 0x91e10da5u
+// From depth to depth: the golden ratio.
+#define THIN_DEEPER 0x9e3779b9u
+// Of surfaces without diffuse reflection it is asked what panes leave of a light if its highlight is at least that much of a pixel.
+#define LEAST_SHOWN 0x1p-18f
+// So many hits of a shadow ray are found at once.
+#define HITS_AT_ONCE 16u
+// The least cosine at which a shadow ray counts as meeting a pane.
+#define LEAST_STEEPNESS 0x1p-6f
+// Where all surfaces are opaque, a ray goes on at a surface, mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
 // no code of an image.
 #define LEAST_ONWARD 0x1p-12f
 // Surface points of which a small share reaches the pixel follow fewer samples of lights through panes: levels of that.
@@ -1897,16 +1915,18 @@ struct alignas(8) MirrorRays {
     Rays rays;
     const Hit *hits;
     unsigned *counts;
+    unsigned *thin;
     ListedRay *onward;
     Cone *cones;
 };
-static_assert(sizeof(MirrorRays) == 832, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 840, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
 static_assert(PLACE_OF(MirrorRays, rays) == 680, "place of MirrorRays::rays");
 static_assert(PLACE_OF(MirrorRays, hits) == 800, "place of MirrorRays::hits");
 static_assert(PLACE_OF(MirrorRays, counts) == 808, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, onward) == 816, "place of MirrorRays::onward");
-static_assert(PLACE_OF(MirrorRays, cones) == 824, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, thin) == 816, "place of MirrorRays::thin");
+static_assert(PLACE_OF(MirrorRays, onward) == 824, "place of MirrorRays::onward");
+static_assert(PLACE_OF(MirrorRays, cones) == 832, "place of MirrorRays::cones");
 
 struct alignas(8) MergedRays {
     Scene scene;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sampling.cuh"
+#include "shading/falloff.cuh"
 #include "shading/ambient.cuh"
 #include "shading/irradiance.cuh"
 #include "shading/tint.cuh"
@@ -60,13 +61,6 @@ DEVICE float cone(const Light &light, Vec3 direction) {
     const float linear = (-dot(direction, light.direction) - light.cos_outer) * light.cone_scale;
     const float clamped = fminf(fmaxf(linear, 0.0f), 1.0f);
     return clamped * clamped;
-}
-
-// What is left of a light at `distance`, over pi where that is its unit.
-DEVICE float falloff(const Light &light, float distance) {
-    if (!light.inverse_square)
-        return 1.0f;
-    return light.kind == Light::DIRECTIONAL ? FRAC_1_PI : FRAC_1_PI / (distance * distance);
 }
 
 // Intensity of a light at `distance` along `direction` (from the surface to the light), falloff and cone included.

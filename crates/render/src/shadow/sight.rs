@@ -229,7 +229,7 @@ impl<'a> Emitter<'a> {
 }
 
 /// See [`Emitter::spread`].
-fn spread(light: &Light) -> f32 {
+pub(crate) fn spread(light: &Light) -> f32 {
     match light.kind {
         LightKind::Point { spread, .. } => spread,
         LightKind::Directional { angle, .. } => disk_radius(angle),

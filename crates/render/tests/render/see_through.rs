@@ -103,6 +103,51 @@ fn mirrors_are_seen_through_panes_and_panes_in_mirrors() {
     assert!(seen(3).distance((0.75 + 0.125) * BACKGROUND) < 1e-5, "{}", seen(3));
 }
 
+/// The share of the light from all sides that is seen through `count` panes, each of which mirrors `mirrored` of it and lets the rest through, by
+/// ways on which it is mirrored up to `most` times.
+fn seen_through_mirrors(count: usize, mirrored: f64, most: usize) -> f64 {
+    // What is under way from the camera, before each pane, by how often it was mirrored; and the same on the way back.
+    let (mut seen, mut there, mut back) =
+        (0.0, vec![vec![0.0; most + 1]; count + 1], vec![vec![0.0; most + 1]; count + 1]);
+    there[0][0] = 1.0;
+    for _ in 0..200 {
+        let (mut next_there, mut next_back) =
+            (vec![vec![0.0; most + 1]; count + 1], vec![vec![0.0; most + 1]; count + 1]);
+        for bounces in 0..=most {
+            seen += there[count][bounces] + back[0][bounces];
+            for pane in 0..count {
+                let (on, off) = (there[pane][bounces], back[pane + 1][bounces]);
+                next_there[pane + 1][bounces] += (1.0 - mirrored) * on;
+                next_back[pane][bounces] += (1.0 - mirrored) * off;
+                if bounces < most {
+                    next_back[pane][bounces + 1] += mirrored * on;
+                    next_there[pane + 1][bounces + 1] += mirrored * off;
+                }
+            }
+        }
+        (there, back) = (next_there, next_back);
+    }
+    seen
+}
+
+#[test]
+fn faint_ways_between_panes_count_as_much_as_they_do() {
+    let glass = || black().with_ks([1.0; 3]).with_opacity(Opacity::blend(0.1));
+    for (count, bounces) in [(2, 1), (6, 2), (12, 4)] {
+        let scene = panes(&vec![glass(); count]);
+        let expected = seen_through_mirrors(count, 0.1, bounces as usize) as f32 * BACKGROUND;
+        for aa in [1, 4] {
+            let frame = render(&scene, &settings().with_bounces(bounces).with_aa(aa));
+            let colors = frame.color().iter().map(|&color| Vec3::from(color));
+            let mean = colors.clone().sum::<Vec3>() / colors.len() as f32;
+            let most = colors.map(|color| (color - expected).abs().max_element()).fold(0.0, f32::max);
+            assert!((mean - expected).abs().max_element() < 1e-3, "{count}, {aa}: {mean} instead of {expected}");
+            // Up to 64 depths with a standard deviation of 0.4/256 each.
+            assert!(most < 0.08, "{count}, {aa}: a pixel errs by {most}");
+        }
+    }
+}
+
 #[test]
 fn a_transparent_image_is_covered_as_far_as_surfaces_are_opaque() {
     let tinted = Opacity::blend(0.5).with_filter([0.5, 1.0, 0.75]);

@@ -146,6 +146,10 @@ impl Accelerator for Bvh {
         }
     }
 
+    fn all_hits(&self, rays: &[Ray], take: &mut dyn FnMut(usize, &[Hit])) {
+        dispatch!(self.level, simd => walk::all_hits(simd, self, rays, take));
+    }
+
     fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
         if segments.len() <= packet::FEW {
             dispatch!(self.level, simd => walk::occluded(simd, self, segments, occluded));

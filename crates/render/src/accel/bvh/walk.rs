@@ -26,7 +26,7 @@ use glam::{Vec3, Vec3A};
 use lightmesh_layout::constants::{BVH_MARGIN, FIRST_INNER, INNER_HITS, LEAST_COMPONENT, ROOT_HIT, TRIANGLE_HITS};
 
 use super::{Bvh, Node};
-use crate::accel::visit::{Any, Closest, Short, Visitor};
+use crate::accel::visit::{All, Any, Closest, Short, Visitor};
 use crate::accel::{Hit, Instanced, Ray, ShortSegments, Triangle};
 
 /// Entries of the stack that lies in registers and cache; deeper trees, which only hostile input produces, get one from the heap.
@@ -79,6 +79,17 @@ pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut
             walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
             near.finish(closest.best)
         });
+    }
+}
+
+#[simd]
+pub(super) fn all_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], take: &mut dyn FnMut(usize, &[Hit])) {
+    let (mut stack, mut hits) = (Stack::new(bvh.depth), Vec::new());
+    for (number, ray) in rays.iter().enumerate() {
+        let Some(near) = bvh.approach.ray(ray) else { continue };
+        let mut all = All::new(&near, &bvh.coverage, &mut hits);
+        walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut all);
+        all.finish(&near, |hits| take(number, hits));
     }
 }
 

@@ -32,7 +32,7 @@ use fearless_simd::Level;
 use lightmesh_memory::{Budget, Short};
 
 use super::approach::{Approach, overlap};
-use super::visit::{Any, Closest};
+use super::visit::{All, Any, Closest};
 use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle};
 use crate::simd::dispatch;
 pub use file::{GridFault, GridFileError, GridSaveError};
@@ -231,6 +231,16 @@ impl Accelerator for Grid {
                 self.walk(near.origin, near.direction, &mut closest);
                 near.finish(closest.best)
             });
+        }
+    }
+
+    fn all_hits(&self, rays: &[Ray], take: &mut dyn FnMut(usize, &[Hit])) {
+        let mut hits = Vec::new();
+        for (number, ray) in rays.iter().enumerate() {
+            let Some(near) = self.approach.ray(ray) else { continue };
+            let mut all = All::new(&near, &self.coverage, &mut hits);
+            self.walk(near.origin, near.direction, &mut all);
+            all.finish(&near, |hits| take(number, hits));
         }
     }
 

@@ -6,6 +6,7 @@ use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
 use super::levels;
+use super::shown::may_show;
 use crate::accel::{Hit, Ray, TangentPlanes};
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
@@ -16,7 +17,10 @@ use crate::shadow::rows::Rows;
 use crate::shadow::sight::Emitter;
 use crate::shadow::{Aim, hidden};
 use crate::stages::primary_rays::cpu::batch;
-use crate::surface::{SurfacePoint, long_segment};
+use crate::surface::{SurfacePoint, gap_behind, long_segment};
+
+/// So many samples are followed about as fast as it is asked whether they may meet anything.
+const FEW: u32 = 4;
 
 /// `visibility` with what `panes` leave of it.
 pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut visibility: Visibility) -> Visibility {
@@ -40,6 +44,9 @@ pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut vis
                         continue;
                     }
                     let point = emitter.seen_from(&wave.scene.geometry, &point);
+                    if !may_show(&wave, panes, ray, &point, emitter.light().0) {
+                        continue;
+                    }
                     let left = match level {
                         0 => batch.left_of_all(emitter, ray, &point, *share),
                         _ => batch.left_of_few(emitter, ray, &point).map(|left| *share * left),
@@ -79,13 +86,13 @@ struct Batch<'a> {
     sets: Vec<u32>,
     /// What is left at each.
     left: Vec<Vec3>,
-    /// Those that are still on their way: their numbers, and the rest of the way.
-    going: Vec<(usize, Ray)>,
+    /// The ways there.
+    rays: Vec<Ray>,
 }
 
 impl<'a> Batch<'a> {
     fn new(wave: &'a HostWave<'a>, panes: &'a PreparedScene) -> Batch<'a> {
-        Batch { wave, panes, targets: Vec::new(), sets: Vec::new(), left: Vec::new(), going: Vec::new() }
+        Batch { wave, panes, targets: Vec::new(), sets: Vec::new(), left: Vec::new(), rays: Vec::new() }
     }
 
     /// What is left of a share of a light by all of its samples; `None` if that is all of it.
@@ -139,7 +146,7 @@ impl<'a> Batch<'a> {
 
     /// Finds what is left of each sample above the horizon. Returns whether anything may be lost.
     fn follow(&mut self, emitter: &Emitter, ray: usize, point: &SurfacePoint) -> bool {
-        if !self.may_meet(emitter, point) {
+        if emitter.samples() > FEW && !self.may_meet(emitter, point) {
             return false;
         }
         self.targets.clear();
@@ -176,28 +183,31 @@ impl<'a> Batch<'a> {
 
     /// Follows rays through all surfaces that they meet. Returns whether they meet any.
     fn pass(&mut self, origin: Vec3) -> bool {
-        let geometry = &self.panes.geometry;
-        self.left.clear();
-        self.left.resize(self.targets.len(), Vec3::ONE);
-        self.going.clear();
-        self.going.extend(self.targets.iter().map(|&target| long_segment(origin, target)).enumerate());
+        let Batch { panes, rays, targets, left, .. } = self;
+        left.clear();
+        left.resize(targets.len(), Vec3::ONE);
+        rays.clear();
+        rays.extend(targets.iter().map(|&target| long_segment(origin, target)));
         let mut met = false;
-        for _ in 0..MOST_THROUGHS {
-            let rays: Vec<Ray> = self.going.iter().map(|(_, ray)| *ray).collect();
-            let mut hits = vec![Hit::MISS; rays.len()];
-            geometry.accelerator.closest_hits(&rays, &mut hits);
-            let mut next = Vec::new();
-            for (&(index, ref ray), hit) in self.going.iter().zip(&hits).filter(|(_, hit)| hit.is_some()) {
-                self.left[index] *= transmittance(self.panes, ray, hit);
-                let point = SurfacePoint::new(ray, hit, &geometry.triangles.at(hit.triangle));
-                next.push((index, long_segment(point.behind(), self.targets[index])));
-            }
-            self.going = next;
-            if self.going.is_empty() {
-                break;
-            }
+        panes.geometry.accelerator.all_hits(rays, &mut |ray, hits| {
+            left[ray] = left_behind(panes, &rays[ray], hits);
             met = true;
-        }
+        });
         met
     }
+}
+
+/// What is left of light along a ray behind these hits, which are in order.
+fn left_behind(panes: &PreparedScene, ray: &Ray, hits: &[Hit]) -> Vec3 {
+    let (mut left, mut last, mut next, mut met) = (Vec3::ONE, 0.0, 0.0, 0);
+    for hit in hits {
+        if hit.t <= next || met == MOST_THROUGHS {
+            continue;
+        }
+        // Bodies absorb light from one surface to the next.
+        left *= transmittance(panes, ray, &Hit { t: hit.t - last, ..*hit });
+        next = hit.t + gap_behind(ray, hit, &panes.geometry.triangles.at(hit.triangle));
+        (last, met) = (hit.t, met + 1);
+    }
+    left
 }

@@ -3,11 +3,13 @@
 #define CUT_OUTS 1
 #include "cuda/prelude.cuh"
 
+#include "accel/nearest.cuh"
 #include "cuda/rays.cuh"
 #include "shading/dielectric.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/shadow.cuh"
 #include "shadow/terminator.cuh"
+#include "stages/filters/shown.cuh"
 
 // The structure of this type in a scene.
 DEVICE const Bvh &structure_of(const Scene &scene, const Bvh &) { return scene.bvh; }
@@ -33,15 +35,26 @@ DEVICE Vec3 transmittance_at(const Filters &args, const Ray &ray, const Hit &hit
 // Follows a ray through all surfaces that it meets: what is left of the light.
 template <class Structure>
 DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 target) {
+    const Ray ray = long_segment(from, target);
     Vec3 left = splat(1.0f);
-    for (unsigned met = 0; met < MOST_THROUGHS; ++met) {
-        const Ray ray = long_segment(from, target);
-        const Hit hit = closest_hit(panes, args.shadows.tally, ray);
-        if (hit.triangle == Hit::NONE)
-            break;
-        left = left * transmittance_at(args, ray, hit);
-        from = behind(surface_point(ray, hit, corners_at(args.triangles, hit.triangle)));
-    }
+    float last = 0.0f, next = 0.0f;
+    unsigned met = 0;
+    NearestHits hits;
+    do {
+        find_nearest(panes, args.shadows.tally, ray, next, hits);
+        for (unsigned number = 0; number < hits.count && met < MOST_THROUGHS; ++number) {
+            Hit hit = nearest_hit(hits, panes, number);
+            const float t = hit.t;
+            if (t <= next)
+                continue;
+            // Bodies absorb light from one surface to the next.
+            hit.t = t - last;
+            left = left * transmittance_at(args, ray, hit);
+            next = t + gap_behind(ray, hit, corners_at(args.triangles, hit.triangle));
+            last = t;
+            ++met;
+        }
+    } while (hits.count == HITS_AT_ONCE && met < MOST_THROUGHS);
     return left;
 }
 
@@ -165,7 +178,8 @@ DEVICE void filters(const Filters &args, const Structure &blockers) {
             Followed followed{};
             if (sees) {
                 const SurfacePoint point = shadow_point_of(shadows.scene, shadows.rays, shadows.hits, ray, light);
-                followed = follow(args, blockers, point, ray, shape, cast);
+                if (may_show(args, ray, point, light))
+                    followed = follow(args, blockers, point, ray, shape, cast);
             }
             if (level > 0)
                 put_left(args, ray, mean_left(followed));

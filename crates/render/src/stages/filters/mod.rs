@@ -20,6 +20,7 @@
 
 pub(crate) mod cpu;
 pub(crate) mod cuda;
+mod shown;
 
 use lightmesh_layout::constants::{FILTER_LEVELS, LEVEL_SHIFT, MOST_OF_LEVEL};
 

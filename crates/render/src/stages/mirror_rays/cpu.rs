@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LEAST_ONWARD, MOST_THROUGHS, THROUGHS_SHIFT};
+use lightmesh_layout::constants::{LEAST_ONWARD, LEAST_THIN, MOST_THROUGHS, THROUGHS_SHIFT};
 use lightmesh_scene::Material;
 use rayon::prelude::*;
 
+use super::thinning::Thinning;
 use crate::accel::Ray;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
@@ -15,16 +16,17 @@ use crate::shading::facets::blurred;
 use crate::shading::seen_lights::SeenLights;
 use crate::shading::{Surface, material_of};
 
-/// Number of rays per task.
+/// Number of rays per task, without the rest of the last pixel.
 const BATCH: usize = 1024;
 
 /// The mirrored rays of a wave.
 pub fn mirror_rays(wave: &HostWave) -> RayList {
-    let count = wave.hits.len();
-    let starts: Vec<usize> = (0..count).step_by(BATCH).collect();
+    let (count, pixels) = (wave.hits.len(), &wave.rays.pixels);
+    let begins = |&ray: &usize| ray == 0 || pixels[ray] != pixels[ray - 1];
+    let first_from = |ray: usize| (ray..count).find(begins).unwrap_or(count);
+    let starts: Vec<usize> = (0..count).step_by(BATCH).map(first_from).chain([count]).collect();
     let seen = SeenLights::new(wave.lights());
-    let of_batch = |start: usize| onward(wave, &seen, start..count.min(start + BATCH));
-    let parts: Vec<RayList> = starts.into_par_iter().map(of_batch).collect();
+    let parts: Vec<RayList> = starts.par_windows(2).map(|ends| onward(wave, &seen, ends[0]..ends[1])).collect();
     let mut next = beyond(wave.rays);
     parts.into_iter().for_each(|part| next.append(part));
     next
@@ -39,7 +41,11 @@ fn beyond(list: &RayList) -> RayList {
 fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
     let (list, has_cones) = (wave.rays, wave.rays.has_cones());
     let mut next = beyond(list);
+    let mut thinning = Thinning::new(list);
+    let thins = wave.scene.lets_through();
+    let least = if thins { LEAST_THIN } else { LEAST_ONWARD };
     let has_samples = !list.samples.is_empty() || wave.scene.lets_through();
+    let mut thinned = |index: usize, weight: Vec3| if thins { thinning.weight(index, weight) } else { Some(weight) };
     let mut add = |index: usize, ray: Ray, cone: Option<Cone>, weight: Vec3, sample: u32| {
         next.rays.push(ray);
         next.cones.extend(cone);
@@ -57,7 +63,10 @@ fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
 
         // 1. Through the surface.
         let weight = reaches * surface.coefficients.transmittance;
-        if weight.max_element() >= LEAST_ONWARD && throughs < MOST_THROUGHS {
+        if weight.max_element() >= least
+            && throughs < MOST_THROUGHS
+            && let Some(weight) = thinned(index, weight)
+        {
             let (origin, direction) = surface.onward();
             let onward = Ray { origin, direction, t_max: f32::INFINITY };
             add(index, onward, has_cones.then(cone), weight, list.sample(index) + (1 << THROUGHS_SHIFT));
@@ -65,7 +74,10 @@ fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
 
         // 2. Mirrored.
         let weight = reaches * surface.coefficients.mirrored;
-        if weight.max_element() >= LEAST_ONWARD && list.mirrors(index) {
+        if weight.max_element() >= least
+            && list.mirrors(index)
+            && let Some(weight) = thinned(index, weight)
+        {
             let direction = surface.mirrored().normalize();
             let onward = Ray { origin: surface.point.origin, direction, t_max: f32::INFINITY };
             let cone = || {

@@ -10,6 +10,7 @@ use crate::error::RenderError;
 use crate::gpu::rays::{DeviceRays, DeviceWave};
 use crate::gpu::{BLOCK, Cuda, blocks_for};
 
+const THIN: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_thin" };
 const COUNT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_count" };
 const EMIT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_emit" };
 
@@ -19,16 +20,25 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
     let blocks = rays.record.count.div_ceil(BLOCK);
     let counts = cuda.pool().room("counts of mirror rays", blocks as usize + 1)?;
     let launch = blocks_for(&(0..u64::from(blocks)), BLOCK);
+    let thin = match wave.scene.host.lets_through() {
+        true => Some(cuda.pool().room("shares of thin rays", rays.record.count as usize)?),
+        false => None,
+    };
     let arguments = MirrorRays {
         scene: wave.scene.record,
         rays: rays.record,
         hits: wave.hits.hits.input(),
         counts: counts.output(),
+        thin: thin.as_ref().map_or(Out::NULL, Buffer::output),
         ..MirrorRays::zeroed()
     };
-    // 1. How many rays go on from each block?
+    // 1. The shares of thin rays.
+    if thin.is_some() {
+        cuda.launch(THIN, launch, &arguments)?;
+    }
+    // 2. How many rays go on from each block?
     cuda.launch(COUNT, launch, &arguments)?;
-    // 2. Where do those of each block begin?
+    // Where do those of each block begin?
     let total = cuda.scan_total(&counts)?;
     // 3. These rays.
     let list = cuda.pool().room("mirror rays", total)?;

@@ -1,7 +1,8 @@
 // Rays that go on, on a CUDA device: twin of cpu.rs, one thread per ray.
 //
-// 1. `mirror_rays_count`: how many rays go on from each block of 256; then a scan.
-// 2. `mirror_rays_emit`: these rays, in the order of the rays.
+// 1. `mirror_rays_thin`: the shares of thin rays, if some are thinned.
+// 2. `mirror_rays_count`: how many rays go on from each block of 256; then a scan.
+// 3. `mirror_rays_emit`: these rays, in the order of the rays.
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
@@ -12,7 +13,7 @@ struct Shares {
     Vec3 through, mirrored;
 };
 
-DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
+DEVICE Shares all_shares_of(const MirrorRays &args, unsigned ray) {
     const Shares none = {splat(0.0f), splat(0.0f)};
     if (ray >= args.rays.count)
         return none;
@@ -24,9 +25,49 @@ DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
     const Vec3 weight = in_front(args.scene, args.rays, args.hits, ray, 1.0f).left * weight_of(args.rays, ray);
     const Vec3 through = weight * material->transmittance, mirrored = weight * material->mirrored;
     const unsigned throughs = throughs_of(args.rays, ray);
-    const bool goes = max_element(through) >= LEAST_ONWARD && throughs < MOST_THROUGHS;
-    const bool returns = max_element(mirrored) >= LEAST_ONWARD && mirrors(args.rays, ray);
+    const float least = args.thin != nullptr ? LEAST_THIN : LEAST_ONWARD;
+    const bool goes = max_element(through) >= least && throughs < MOST_THROUGHS;
+    const bool returns = max_element(mirrored) >= least && mirrors(args.rays, ray);
     return Shares{goes ? through : none.through, returns ? mirrored : none.mirrored};
+}
+
+// The share of a thin ray of this weight, in units of LEAST_THICK 2^-16; 0 of others.
+DEVICE unsigned part_of(Vec3 weight) {
+    const float share = max_element(weight);
+    return share >= LEAST_THICK ? 0 : (unsigned)(share * ((float)(1u << THIN_BITS) / LEAST_THICK));
+}
+
+// The offset of a pixel: twin of thinning.rs.
+DEVICE unsigned offset_of(const Rays &rays, unsigned pixel) {
+    unsigned across = THIN_ACROSS, down = THIN_DOWN;
+    for (unsigned depth = 0; depth < rays.depth; ++depth) {
+        across *= THIN_ACROSS;
+        down *= THIN_DOWN;
+    }
+    const unsigned x = place_in_image(rays.view, pixel, 0) * across, y = place_in_image(rays.view, pixel, 1) * down;
+    return (x + y + (rays.depth + 1) * THIN_DEEPER) >> (32 - THIN_BITS);
+}
+
+// The weight with which the next ray of a pixel goes on, or zero; `sum` are the offset and the parts of those before.
+DEVICE Vec3 thinned(Vec3 weight, unsigned &sum) {
+    const unsigned part = part_of(weight), before = sum;
+    if (part == 0)
+        return weight;
+    sum += part;
+    return sum >> THIN_BITS != before >> THIN_BITS ? ((float)(1u << THIN_BITS) / (float)part) * weight : splat(0.0f);
+}
+
+// What is left of these shares.
+DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
+    const Shares all = all_shares_of(args, ray);
+    if (args.thin == nullptr || ray >= args.rays.count || args.thin[ray] == 0)
+        return all;
+    const unsigned pixel = pixel_of(args.rays, ray);
+    unsigned sum = offset_of(args.rays, pixel);
+    for (unsigned before = ray; before-- > 0 && pixel_of(args.rays, before) == pixel;)
+        sum += args.thin[before];
+    const Vec3 through = thinned(all.through, sum);
+    return Shares{through, thinned(all.mirrored, sum)};
 }
 
 // The cone that the mirror at a surface point reflects.
@@ -53,6 +94,14 @@ DEVICE unsigned flags_before(bool first, bool second, unsigned &all) {
         all += warps[other];
     }
     return before;
+}
+
+KERNEL(mirror_rays_thin, MirrorRays, BLOCK, 4) {
+    const unsigned ray = blockIdx.x * BLOCK + threadIdx.x;
+    if (ray >= args.rays.count)
+        return;
+    const Shares shares = all_shares_of(args, ray);
+    args.thin[ray] = part_of(shares.through) + part_of(shares.mirrored);
 }
 
 KERNEL(mirror_rays_count, MirrorRays, BLOCK, 4) {

@@ -6,3 +6,4 @@
 
 pub(crate) mod cpu;
 pub(crate) mod cuda;
+mod thinning;

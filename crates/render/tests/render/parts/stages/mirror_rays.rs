@@ -1,11 +1,12 @@
 //! Directions and weights of mirrored rays.
 
 use glam::Vec3;
+use lightmesh_layout::constants::LEAST_THICK;
 use lightmesh_render::accel::{Hit, Ray};
 use lightmesh_render::backend::Wave;
 use lightmesh_render::internals::stages::mirror_rays;
-use lightmesh_render::{Acceleration, Job, LightGroup, PreparedScene, RayList, Sampling, Unobserved};
-use lightmesh_scene::Material;
+use lightmesh_render::{Acceleration, Job, LightGroup, PreparedScene, RayList, Sampling, Unobserved, Window};
+use lightmesh_scene::{Material, Opacity};
 use lightmesh_testkit::SceneDraft;
 
 fn mirror(ks: Vec3) -> Material {
@@ -68,4 +69,55 @@ fn smooth_normals_turn_the_mirror_but_not_into_the_surface() {
     // A normal that would reflect into the floor: the geometric one is used instead.
     let next = mirrored(mirror(Vec3::ONE), Some(Vec3::new(0.99, 0.141, 0.0)), &rays(Vec::new()));
     assert!(next.rays.iter().all(|ray| ray.direction.y > 0.0), "{:?}", next.rays);
+}
+
+/// Many rays of this weight, `each` of each pixel of an image of 64 × 64, onto a floor of this material.
+fn faint(material: Material, weight: f32, each: usize) -> RayList {
+    let ray = Ray { origin: Vec3::new(0.5, 2.0, 0.25), direction: Vec3::new(0.6, -0.8, 0.0), t_max: f32::INFINITY };
+    let count = 64 * 64 * each;
+    let list = RayList {
+        rays: vec![ray; count],
+        pixels: (0..count).map(|ray| (ray / each) as u32).collect(),
+        weights: vec![Vec3::splat(weight); count],
+        samples: vec![1; count],
+        window: Window::all([64; 2]),
+        ..RayList::default()
+    };
+    mirrored(material, None, &list)
+}
+
+/// What the rays of each pixel carry together.
+fn carried(list: &RayList) -> Vec<f64> {
+    let mut sums = vec![0.0; 64 * 64];
+    list.pixels.iter().zip(&list.weights).for_each(|(&pixel, weight)| sums[pixel as usize] += f64::from(weight.x));
+    sums
+}
+
+#[test]
+fn faint_rays_are_thinned_and_carry_what_they_did() {
+    let glass = mirror(Vec3::ONE).with_opacity(Opacity::blend(0.5));
+    let thick = f64::from(LEAST_THICK);
+    for (weight, each) in [(1.0 / 1000.0, 13), (1.0 / 5000.0, 40), (1.0 / 20_000.0, 7)] {
+        let next = faint(glass.clone(), weight, each);
+        let (sums, expected) = (carried(&next), f64::from(weight) * each as f64);
+        for &sum in &sums {
+            assert!((sum - expected).abs() < 1.01 * thick, "a pixel errs by less than one ray: {sum}, {expected}");
+        }
+        let mean = sums.iter().sum::<f64>() / sums.len() as f64;
+        assert!((mean / expected - 1.0).abs() < 0.03, "{mean} instead of {expected}");
+        let count = next.rays.len() as f64 / sums.len() as f64;
+        assert!((count * thick / expected - 1.0).abs() < 0.03, "{count} rays of a pixel");
+    }
+}
+
+#[test]
+fn what_is_seen_well_is_not_thinned() {
+    let half = |next: &RayList, share: f32| next.weights.iter().all(|&weight| weight == Vec3::splat(share));
+    let glass = mirror(Vec3::ONE).with_opacity(Opacity::blend(0.5));
+    let next = faint(glass, 2.0 * LEAST_THICK, 3);
+    assert!(next.rays.len() == 2 * 3 * 64 * 64 && half(&next, LEAST_THICK), "both rays of each go on as they are");
+    // Opaque mirrors make one ray each.
+    let next = faint(mirror(Vec3::splat(0.5)), 1.0 / 1024.0, 3);
+    assert!(next.rays.len() == 3 * 64 * 64 && half(&next, 1.0 / 2048.0));
+    assert!(faint(mirror(Vec3::splat(0.5)), 1.0 / 4096.0, 3).rays.is_empty());
 }

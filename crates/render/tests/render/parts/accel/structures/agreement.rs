@@ -29,6 +29,13 @@ pub(super) fn blocked(accelerator: &dyn Accelerator, segments: &ShortSegments) -
     blocked
 }
 
+/// All hits of each ray.
+fn all(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Vec<Hit>> {
+    let mut hits = vec![Vec::new(); rays.len()];
+    accelerator.all_hits(rays, &mut |ray, all| hits[ray].extend_from_slice(all));
+    hits
+}
+
 pub(super) fn bits(hit: &Hit) -> [u32; 4] {
     bytemuck::cast(*hit)
 }
@@ -46,8 +53,21 @@ fn rays_agree(
         prop_assert_eq!(hit.is_some(), *shadow, "closest and any hit, {:?}", ray);
         prop_assert!(!hit.t.is_nan() && (0.0..=1.0).contains(&hit.u) && (0.0..=1.0).contains(&hit.v), "{:?}", hit);
     }
-    let all = structures_over(triangles, coverage);
-    for (name, accelerator) in &all {
+    let behind = all(&oracle, &rays);
+    for (hits, first) in behind.iter().zip(&hits) {
+        prop_assert_eq!(
+            hits.first().map(bits),
+            first.is_some().then(|| bits(first)),
+            "the first of all is the closest"
+        );
+        let ordered = |pair: &[Hit]| pair[0].t <= pair[1].t && pair[0].triangle != pair[1].triangle;
+        prop_assert!(hits.windows(2).all(ordered), "each once and in order: {:?}", hits);
+    }
+    for (name, accelerator) in &structures_over(triangles, coverage) {
+        for (index, (hits, expected)) in all(&**accelerator, &rays).iter().zip(&behind).enumerate() {
+            let bits = |hits: &[Hit]| hits.iter().map(bits).collect::<Vec<_>>();
+            prop_assert_eq!(bits(hits), bits(expected), "{}, {:?}: all hits", name, rays[index]);
+        }
         for (index, (hit, expected)) in closest(&**accelerator, &rays).iter().zip(&hits).enumerate() {
             prop_assert_eq!(bits(hit), bits(expected), "{}, {:?}: {:?} / {:?}", name, rays[index], hit, expected);
         }
