@@ -99,6 +99,12 @@ impl Environment {
         self
     }
 
+    /// With another image of the same size.
+    pub(crate) fn with_texels(&self, texels: Vec<[f32; 3]>) -> Environment {
+        assert_eq!(texels.len(), self.levels.image.len());
+        Environment { name: self.name.clone(), levels: texels.into(), ..*self }
+    }
+
     /// With a sun, which hides what is behind it.
     pub fn with_sun(self, sun: Option<Sun>) -> Environment {
         Environment { sun, ..self }

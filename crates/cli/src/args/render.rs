@@ -188,7 +188,7 @@ pub(crate) struct ImageArgs {
     #[arg(long, conflicts_with_all = ["no_studio", "lights", "sky", "environment", "ambient", "background", "grid_file"], help_heading = "Scene")]
     pub(crate) studio: bool,
 
-    /// Give a model without lights a key light and a fill light only
+    /// Give a model without lights a key light and a fill light only, and under --sky no ground and horizon
     #[arg(long, help_heading = "Scene")]
     pub(crate) no_studio: bool,
 
