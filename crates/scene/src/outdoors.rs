@@ -14,7 +14,8 @@ const HAZE: f32 = 4.0;
 
 impl Scene {
     /// Completes a scene that has surroundings but no camera, such as one under a [sky](crate::Sky): adds a camera that frames it with the horizon
-    /// in the upper part of the image, haze, and a [ground](Scene::add_ground). An interior gets its [usual camera](Scene::default_camera) alone.
+    /// in the upper part of the image, haze, and a [ground](Scene::add_ground). An interior keeps its [usual camera](Scene::default_camera), and gets nothing
+    /// else if that is inside.
     ///
     /// ```
     /// use lightmesh_scene::{Scene, Sky, Up};
@@ -30,7 +31,7 @@ impl Scene {
         };
         let (camera, viewpoint) = self.camera_outdoors(up, aspect);
         self.cameras.push(camera);
-        let outdoors = viewpoint == Viewpoint::Front;
+        let outdoors = viewpoint != Viewpoint::Inside;
         if outdoors {
             self.lights.environment = Some(hazy(&around).into());
             self.lights.outdoors = true;
