@@ -30,6 +30,8 @@ picture balloon "$models/balloon/scene.gltf"
 picture chess "$models/chess/chess-board.glb"
 picture house "$models/house/house.glb"
 picture milk_truck "$models/milk_truck/CesiumMilkTruck.glb"
+picture truck_sky "$models/milk_truck/CesiumMilkTruck.glb" --sky clear
+picture bunny_sky "$models/bunny/bunny.ply" --sky "clear;sun=12,240"
 picture truck_on_ground "$models/milk_truck/CesiumMilkTruck.glb" --no-studio --ground
 "$program" render "$models/house/house.glb" --sun 55.03,82.92,2026-06-21+07:00,06:00-20:00/15m --size 640x480 -q \
     --sun-hours "$new/house_hours.png"

@@ -45,6 +45,8 @@ class Model:
     """Codes of the 8-bit picture."""
     covered: np.ndarray
     """Share of each pixel that is covered."""
+    sky: np.ndarray
+    """Codes of the picture under a clear sky, with ground and horizon where the program adds the camera."""
     notes: str
 
 
@@ -61,13 +63,17 @@ def render(program, folder, name, size, output):
     view = ["--camera", CAMERAS[name]] if name in CAMERAS else []
     command = [program, "render", file, "--no-studio", "--size", f"{size}x{size}", *view, "--device", "cpu"]
     done = subprocess.run([*command, "-o", picture, "--stats", stats], check=True, stderr=subprocess.PIPE, text=True)
+    sky = stem.with_name(stem.name + ".sky.png")
+    outdoors = [argument for argument in command if argument != "--no-studio"]
+    subprocess.run([*outdoors, "-o", sky, "--sky", "clear", "-q"], check=True)
     subprocess.run([*command, "-o", mask, "--background", "transparent", "--quality", "draft", "-q"], check=True)
     settings = json.loads(stats.read_text())["settings"]
     info = json.loads(subprocess.run([program, "info", file, "--json"], check=True, stdout=subprocess.PIPE).stdout)
     camera = view_of(settings["camera"], file)
     suns = [] if info["lights"] else suns_of(camera, info["bounds"])
-    codes, alpha = np.asarray(Image.open(picture).convert("RGB")), np.asarray(Image.open(mask).convert("RGBA"))[..., 3] / 255
-    return Model(name, file, camera, settings["ambient"], settings["background"], suns, codes, alpha, done.stderr.strip())
+    codes, under_sky = (np.asarray(Image.open(file).convert("RGB")) for file in (picture, sky))
+    alpha = np.asarray(Image.open(mask).convert("RGBA"))[..., 3] / 255
+    return Model(name, file, camera, settings["ambient"], settings["background"], suns, codes, alpha, under_sky, done.stderr.strip())
 
 
 def view_of(camera, file):

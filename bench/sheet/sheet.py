@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Contact sheets: every model of a folder at Lightmesh's defaults, beside Blender's Cycles.
+"""Contact sheets: every model of a folder at Lightmesh's defaults and under its clear sky, beside Blender's Cycles.
 
     target/sheet/bin/python bench/sheet/sheet.py ../shared/scenes target/release/lightmesh -o sheets
 
@@ -43,12 +43,13 @@ def main():
         model = models.render(plan.program.resolve(), plan.models, name, plan.size, plan.output)
         other = None if plan.without_cycles else cycles(model, plan)
         row = {"file": name, "lightmesh": models.shares(model.picture, model.covered)}
+        row["sky"] = models.shares(model.sky, np.ones_like(model.covered))
         if other is not None:
             row["cycles"] = models.shares(other, model.covered)
         row["verdict"] = verdicts.get(name, {}).get("verdict", "")
         verdicts[name] = {**verdicts.get(name, {}), **row}
-        pairs.append(pair(name, model.picture, other, plan.output))
-        print(name, json.dumps(row["lightmesh"]), flush=True)
+        pairs.append(pair(name, {"Lightmesh": model.picture, "under a clear sky": model.sky, "Cycles": other}, plan.output))
+        print(name, json.dumps({key: row[key] for key in ("lightmesh", "sky")}), flush=True)
         save(verdicts, plan)
     for first in range(0, len(pairs), PAIRS_PER_SHEET):
         sheet(pairs[first : first + PAIRS_PER_SHEET], plan.output / f"sheet-{first // PAIRS_PER_SHEET:02}.png")
@@ -67,13 +68,13 @@ def save(verdicts, plan):
     VERDICTS.write_text(json.dumps(text, indent=1, ensure_ascii=False) + "\n")
 
 
-def pair(name, left, right, folder):
-    """Both images with the model's name above."""
-    images = [image for image in (left, right) if image is not None]
-    size = left.shape[0]
+def pair(name, images, folder):
+    """The images side by side with the model's name and theirs above."""
+    images = {title: image for title, image in images.items() if image is not None}
+    size = next(iter(images.values())).shape[0]
     canvas = Image.new("RGB", (size * len(images), size + TITLE), (32, 32, 32))
-    ImageDraw.Draw(canvas).text((4, 3), f"{name}: Lightmesh{', Cycles' if len(images) == 2 else ''}", fill=(230, 230, 230))
-    for number, image in enumerate(images):
+    ImageDraw.Draw(canvas).text((4, 3), f"{name}: {', '.join(images)}", fill=(230, 230, 230))
+    for number, image in enumerate(images.values()):
         canvas.paste(Image.fromarray(image), (number * size, TITLE))
     canvas.save(folder / f"{name.replace('/', '-')}.pair.png")
     return canvas

@@ -122,6 +122,11 @@ impl ImageRequest {
         Ok(ImageRequest { settings, choices, exposure: exposure.exposure })
     }
 
+    /// The same for a picture to look at, as `lightmesh render` makes it: under a sky, a model without camera stands on a ground before the horizon.
+    pub fn of_picture(self) -> ImageRequest {
+        ImageRequest { choices: self.choices.of_picture(true), ..self }
+    }
+
     /// The settings of the renderer.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -137,9 +142,10 @@ impl ImageRequest {
     /// # Errors
     /// [`ChoiceError`] for an unknown camera or invalid surroundings.
     pub fn stage(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Staged, ChoiceError> {
-        let Applied { behind, ground } = self.choices.apply(scene, observer)?;
+        let Applied { behind, ground, outdoors } = self.choices.apply(scene, observer)?;
         let exposure = exposure(scene, self.exposure);
-        Ok(Staged { metering: Metering::new(scene, exposure, self.settings.transparent, behind), ground })
+        let metering = Metering::new(scene, exposure, self.settings.transparent, behind);
+        Ok(Staged { metering: metering.of_highlights(outdoors, self.exposure), ground })
     }
 }
 

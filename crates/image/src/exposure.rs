@@ -10,6 +10,11 @@ use crate::Frame;
 const MIDDLE_GREY: f32 = 0.18;
 /// Share of the lit pixels that must not be brighter than white.
 const BELOW_WHITE: f64 = 0.95;
+/// What the largest channel of the pixel shows of which only a hundredth of the image is brighter: white paper, not white.
+const BRIGHT: f32 = 0.85;
+const BELOW_BRIGHT: f64 = 0.99;
+/// By how many stops an image is brightened at most for this: what is dark should be so.
+const MOST_BRIGHTENED: f32 = 0.5;
 /// Steps per stop, so that the result can be typed.
 const STEPS_A_STOP: f32 = 100.0;
 
@@ -33,6 +38,22 @@ impl Frame {
         let (_, &mut bright, _) = lit.select_nth_unstable_by(place, f32::total_cmp);
         let stops = (MIDDLE_GREY.log2() - mean as f32).min(-bright.log2());
         (stops * STEPS_A_STOP).round() / STEPS_A_STOP
+    }
+}
+
+impl Frame {
+    /// Exposure of an image whose light has about the range of a screen: the brightest that clips hardly anything, at most half a stop; in steps of a
+    /// hundredth of a stop. Only a hundredth of the image is then brighter than 0.85.
+    pub fn highlight_exposure(&self) -> f32 {
+        let largest = |&[r, g, b]: &[f32; 3]| r.max(g).max(b);
+        let mut largest: Vec<f32> = self.color().iter().map(largest).filter(|value| value.is_finite()).collect();
+        if largest.is_empty() {
+            return 0.0;
+        }
+        let place = ((largest.len() - 1) as f64 * BELOW_BRIGHT) as usize;
+        let (_, &mut bright, _) = largest.select_nth_unstable_by(place, f32::total_cmp);
+        let stops = (BRIGHT / bright.max(f32::MIN_POSITIVE)).log2();
+        (stops.min(MOST_BRIGHTENED) * STEPS_A_STOP).round() / STEPS_A_STOP
     }
 }
 

@@ -275,7 +275,8 @@ impl Renderer {
         cancel: Option<Cancel>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Frame> {
-        let order = Order::new(&scene, settings)?;
+        let mut order = Order::new(&scene, settings)?;
+        order.request = order.request.of_picture();
         let render =
             |watch: &Watch| {
                 let (kept, staged) = order.prepare(&self.engine, &self.last, None, watch)?;

@@ -113,6 +113,17 @@ impl Environment {
         self
     }
 
+    /// With another image of the same size, made from this one; also from that without its lights.
+    pub(crate) fn redrawn(&self, draw: &impl Fn(&[[f32; 3]]) -> Vec<[f32; 3]>) -> Environment {
+        let texels = draw(&self.levels.image);
+        assert_eq!(texels.len(), self.levels.image.len());
+        let bright = self.bright.as_deref().map(|Bright { discs, rest }| {
+            let rest = rest.redrawn(draw);
+            Bright { discs: discs.clone(), rest }.into()
+        });
+        Environment { name: self.name.clone(), levels: texels.into(), bright, ..*self }
+    }
+
     /// With a sun, which hides what is behind it.
     pub fn with_sun(self, sun: Option<Sun>) -> Environment {
         Environment { sun, ..self }

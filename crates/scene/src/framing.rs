@@ -49,6 +49,11 @@ pub const FILL: f32 = 0.92;
 /// Position of the framing camera relative to the scene's centre: to the right, above and in front.
 const VIEW: [f32; 3] = [0.55, 0.45, 1.0];
 
+/// The same under a sky: it looks down by 12°, so that the horizon is in the upper part of the image.
+const VIEW_OUTDOORS: [f32; 3] = [0.55, 0.2426, 1.0];
+/// Share of the image's half height that the framed scene fills there.
+const FILL_OUTDOORS: f32 = 0.8;
+
 /// Radius over which area mode distributes these lights, as a share of the scene's diagonal.
 const DEFAULT_LIGHT_SPREAD: f32 = 0.05;
 
@@ -71,6 +76,8 @@ pub struct Added {
     pub lights_inside: bool,
     /// They are those of a [studio](Lighting::Studio), which has a ground, too.
     pub studio: bool,
+    /// A ground and haze, by [`Scene::complete_outdoors`].
+    pub outdoors: bool,
 }
 
 /// What lights a scene that brings no light.
@@ -177,6 +184,17 @@ impl Scene {
         view(&Sight::new(&outline), &Subject::of(&outline), up, aspect).0
     }
 
+    /// The camera of [`Scene::complete_outdoors`]: [`Scene::default_camera_for`], but lower and farther away where that one looks from the front.
+    pub(crate) fn camera_outdoors(&self, up: Up, aspect: f32) -> (Camera, Viewpoint) {
+        let outline = self.geometry.mesh.outline(OUTLINE);
+        let (sight, subject) = (Sight::new(&outline), Subject::of(&outline));
+        let usual = view(&sight, &subject, up, aspect);
+        if usual.1 != Viewpoint::Front {
+            return usual;
+        }
+        (framing((&sight, &subject), toward(VIEW_OUTDOORS, up), up, aspect, FILL_OUTDOORS), Viewpoint::Front)
+    }
+
     /// Two white point lights without falloff. The key light is above and to the side of the camera's eye, so that shadows fall away
     /// from the viewer and to the side; the fill light, weaker and lower, is on the other side, so that they are not black. If the key light
     /// reaches less than a fifth of what the camera sees, they are in the space that it sees: the key light high above the middle of the
@@ -206,27 +224,34 @@ impl Scene {
 }
 
 fn view(sight: &Sight, subject: &Subject, up: Up, aspect: f32) -> (Camera, Viewpoint) {
-    let bounds = subject.bounds;
-    let (right, front) = sides(up);
-    let from = |direction: Vec3| {
-        let mut camera = Camera {
-            name: "default".to_owned(),
-            position: bounds.center(),
-            direction,
-            up: up.axis(),
-            projection: Projection::Perspective(Fov::Vertical(VFOV)),
-            shift: Vec2::ZERO,
-            motion: None,
-        };
-        camera.position = fitting(sight.mesh(), subject, &camera, aspect);
-        camera
-    };
-    let camera = from(-(VIEW[0] * right + VIEW[1] * up.axis() + VIEW[2] * front).normalize());
-    match rooms::interior(sight, &bounds, up.axis(), &camera) {
+    let from = |direction: Vec3| framing((sight, subject), direction, up, aspect, FILL);
+    let camera = from(toward(VIEW, up));
+    match rooms::interior(sight, &subject.bounds, up.axis(), &camera) {
         None => (camera, Viewpoint::Front),
         Some(Interior::OpenSide(direction)) => (from(direction), Viewpoint::OpenSide),
         Some(Interior::Inside(camera)) => (camera, Viewpoint::Inside),
     }
+}
+
+/// The direction of a camera that is at this place relative to what it looks at: to the right, above and in front.
+fn toward([beside, above, before]: [f32; 3], up: Up) -> Vec3 {
+    let (right, front) = sides(up);
+    -(beside * right + above * up.axis() + before * front).normalize()
+}
+
+/// A camera of this direction that frames the subject, which fills this share of the image.
+fn framing((sight, subject): (&Sight, &Subject), direction: Vec3, up: Up, aspect: f32, fill: f32) -> Camera {
+    let mut camera = Camera {
+        name: "default".to_owned(),
+        position: subject.bounds.center(),
+        direction,
+        up: up.axis(),
+        projection: Projection::Perspective(Fov::Vertical(VFOV)),
+        shift: Vec2::ZERO,
+        motion: None,
+    };
+    camera.position = fitting(sight.mesh(), subject, &camera, aspect, fill);
+    camera
 }
 
 /// The lights, and whether they are inside.
@@ -253,14 +278,14 @@ fn sides(up: Up) -> (Vec3, Vec3) {
     }
 }
 
-/// Where a camera of this direction has to be so that all vertices of what it frames fit in an image of this width, relative to its height, in its middle.
+/// Where a camera of this direction has to be so that all vertices of what it frames fit in this share of an image of this width, relative to its height, in its middle.
 ///
 /// In coordinates to the right, up and forward, with T the tangent of half the field of view along an axis of the image, a point is left of the right border of a
 /// camera at c if `x - c.x <= T (z - c.z)`, so the largest `x - T z` of all points bounds `c.x - T c.z`; and so for each border. The
 /// two borders of an axis fix the camera's place across it, and the axis with the larger distance decides that.
-fn fitting(mesh: &Mesh, subject: &Subject, camera: &Camera, aspect: f32) -> Vec3 {
+fn fitting(mesh: &Mesh, subject: &Subject, camera: &Camera, aspect: f32, fill: f32) -> Vec3 {
     let (right, up, forward) = camera.basis();
-    let high = FILL * (0.5 * VFOV).to_radians().tan();
+    let high = fill * (0.5 * VFOV).to_radians().tan();
     let wide = aspect * high;
     let center = subject.bounds.center();
     let mut borders = [f32::NEG_INFINITY; 4];

@@ -28,6 +28,8 @@ pub struct Lights {
     /// Whether they are those of a [studio](crate::Lighting::Studio), whose environment is meant to light surfaces by direction, without
     /// shadows, and to be mirrored.
     pub studio: bool,
+    /// Whether the environment is that of a view [outdoors](crate::Scene::complete_outdoors), which is meant to be mirrored, too.
+    pub outdoors: bool,
 }
 
 impl Lights {

@@ -188,7 +188,7 @@ pub(crate) struct ImageArgs {
     #[arg(long, conflicts_with_all = ["no_studio", "lights", "sky", "environment", "ambient", "background", "grid_file"], help_heading = "Scene")]
     pub(crate) studio: bool,
 
-    /// Give a model without lights a key light and a fill light only
+    /// Give a model without lights a key light and a fill light only, and under --sky no ground and horizon
     #[arg(long, help_heading = "Scene")]
     pub(crate) no_studio: bool,
 
@@ -254,7 +254,7 @@ pub(crate) struct ImageArgs {
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ExposureArgs {
     /// Brighten 8-bit and 16-bit files by this many stops; auto suits any light level; exr files stay linear [default:
-    /// auto with photometric lights, else 0]
+    /// auto with photometric lights, by what is bright where --sky brings a ground, else 0]
     #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, help_heading = "Image")]
     pub(crate) exposure: Option<Exposure>,
 }

@@ -177,7 +177,9 @@ impl RenderPlan {
             scene: args.scene.clone(),
             smooth: args.form.smooth.unwrap_or_else(|| usual_smooth(&settings)).0,
             instancing: instancing(args, &settings),
-            choices: SceneChoices::new(&args.image, format, memory_limit)?.under_sun(sun.as_ref()),
+            choices: SceneChoices::new(&args.image, format, memory_limit)?
+                .under_sun(sun.as_ref())
+                .of_picture(sun.is_none()),
             settings,
             device: args.machine.device,
             threads: args.machine.threads.and_then(|threads| NonZeroUsize::new(threads as usize)),

@@ -40,6 +40,8 @@ pub(crate) struct Applied {
     pub(crate) behind: Option<f32>,
     /// The axis across the ground, if one was added.
     pub(crate) ground: Option<Up>,
+    /// Whether it shows a model under a sky, with horizon and haze.
+    pub(crate) outdoors: bool,
 }
 
 /// Camera, lights, surroundings, ambient term and background as typed.
@@ -57,6 +59,9 @@ pub(crate) struct SceneChoices {
     sky: Option<SkySpec>,
     environment: Option<EnvironmentSpec>,
     ground: bool,
+    /// Whether the sky may bring a ground and haze to a model without camera, and whether it does.
+    may_be_outdoors: bool,
+    outdoors: bool,
     lighting: Lighting,
     /// Width of the image, relative to its height.
     aspect: f32,
@@ -91,6 +96,8 @@ impl SceneChoices {
             sky: args.sky,
             environment: args.environment.clone(),
             ground: args.ground,
+            may_be_outdoors: args.sky.is_some() && lighting(args) == Lighting::Studio && format.is_some_and(is_model),
+            outdoors: false,
             lighting: lighting(args),
             aspect: args.size.0[0] as f32 / args.size.0[1] as f32,
             budget: Budget::new(memory_limit),
@@ -100,6 +107,11 @@ impl SceneChoices {
     /// With the sky of a study's first moment.
     pub(super) fn under_sun(self, sun: Option<&SunStudy>) -> SceneChoices {
         SceneChoices { sky: sun.map(|sun| sun.sky_at(0)).or(self.sky), ..self }
+    }
+
+    /// For a picture to look at, not for numbers or a study: a model without camera is shown outdoors under a sky.
+    pub(crate) fn of_picture(self, is_picture: bool) -> SceneChoices {
+        SceneChoices { outdoors: is_picture && self.may_be_outdoors, ..self }
     }
 
     /// Applies camera, lights, surroundings, ambient term and background to the scene; reports which defaults had to be added. Returns what
@@ -127,7 +139,10 @@ impl SceneChoices {
         if let (Lighting::StudioAnywhere, Some(what)) = (self.lighting, scene.beside_studio()) {
             return Err(ChoiceError::Studio { what });
         }
-        let added = scene.complete_with(self.lighting, up, self.aspect);
+        let added = match self.outdoors {
+            true => scene.complete_outdoors(up, self.aspect),
+            false => scene.complete_with(self.lighting, up, self.aspect),
+        };
         if added.camera {
             let from = match added.viewpoint {
                 Viewpoint::OpenSide => "looks into it through its open side",
@@ -157,7 +172,14 @@ impl SceneChoices {
             return Ok(Applied {
                 behind: scene.lights.background.take().map(|background| background.x),
                 ground: Some(up),
+                outdoors: false,
             });
+        }
+        if added.outdoors {
+            observer.note(
+                "the model stands on a ground that catches its shadows and fades into the sky (--no-studio omits it)",
+            );
+            return Ok(Applied { behind: None, ground: Some(up), outdoors: true });
         }
         if self.ground {
             scene.add_ground(up);
@@ -165,7 +187,7 @@ impl SceneChoices {
         let lights = &scene.lights;
         let is_open = self.background.is_none() && lights.background.is_none() && lights.environment.is_none();
         let behind = (self.ground && is_open).then_some(GROUND_BACKGROUND);
-        Ok(Applied { behind, ground: self.ground.then_some(up) })
+        Ok(Applied { behind, ground: self.ground.then_some(up), outdoors: false })
     }
 
     /// What is up, and why it is not what is usual.
@@ -233,6 +255,11 @@ impl SceneChoices {
         };
         Light::new(kind).with_intensity(light.intensity).with_falloff(self.falloff)
     }
+}
+
+/// Whether files of a format hold models, not scenes of this program.
+fn is_model(format: SceneFormat) -> bool {
+    format != SceneFormat::Toml
 }
 
 /// What lights a scene that brings no light.

@@ -17,6 +17,8 @@ use crate::value::Exposure;
 #[derive(Clone)]
 pub(crate) struct Metering {
     exposure: Exposure,
+    /// Whether an exposure of 0 stops is only where to start: it is found by what is bright in the image.
+    keeps_highlights: bool,
     has_ground: bool,
     /// What a ground is metered without and put in front of.
     behind: Option<Behind>,
@@ -52,17 +54,24 @@ impl Metering {
             }
             _ => None,
         };
-        Metering { exposure, has_ground, behind }
+        Metering { exposure, keeps_highlights: false, has_ground, behind }
+    }
+
+    /// The same for an image `outdoors`, which is exposed by what is bright in it, unless an exposure is `chosen`.
+    pub(crate) fn of_highlights(self, outdoors: bool, chosen: Option<Exposure>) -> Metering {
+        let keeps_highlights = outdoors && chosen.is_none() && self.exposure == Exposure::Stops(0.0);
+        Metering { keeps_highlights, ..self }
     }
 
     /// The same with an exposure that is known.
     pub(super) fn fixed(mut self, stops: f32) -> Metering {
         self.exposure = Exposure::Stops(stops);
+        self.keeps_highlights = false;
         self
     }
 
     pub(super) fn is_automatic(&self) -> bool {
-        self.exposure == Exposure::Auto
+        self.exposure == Exposure::Auto || self.keeps_highlights
     }
 
     /// Whether the scene has a shadow catcher.
@@ -124,6 +133,15 @@ impl Metering {
     /// The exposure in stops.
     fn stops(&self, frame: &Frame, observer: &dyn Observer) -> f32 {
         match self.exposure {
+            Exposure::Stops(_) if self.keeps_highlights => {
+                let stops = finished_part(frame).highlight_exposure();
+                if stops != 0.0 {
+                    observer.note(&format!(
+                        "exposure: using {stops} stops, by what is bright (--exposure 0 keeps the light as it is)"
+                    ));
+                }
+                stops
+            }
             Exposure::Stops(stops) => stops,
             Exposure::Auto => {
                 let stops = finished_part(frame).auto_exposure();

@@ -14,6 +14,7 @@ use super::mesh_file::Mesh;
 use super::{BUILDING, film, movie, open::open, range, sun};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
+use crate::plan::scene::Applied;
 use crate::plan::{PictureFiles, RenderPlan};
 use crate::progress::Watcher;
 use crate::report::Report;
@@ -46,7 +47,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         plan.files.outputs.keep("the environment", Some(file))?;
     }
     let applied = plan.choices.apply(&mut scene, &watcher)?;
-    let metering = metering(&mut scene, &plan, applied.behind);
+    let metering = metering(&mut scene, &plan, &applied);
     let prepared = memory::during(BUILDING, || renderer.prepare(&scene, &plan.settings, &watcher))?;
     film::explain(&scene, plan.film.is_some(), &watcher);
     let studio =
@@ -74,10 +75,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 }
 
 /// How the image is exposed: not at all if its file stores linear values.
-fn metering(scene: &mut Scene, plan: &RenderPlan, behind: Option<f32>) -> Metering {
+fn metering(scene: &mut Scene, plan: &RenderPlan, applied: &Applied) -> Metering {
     let is_linear = plan.files.format() == Some(Format::Exr);
     let exposure = if is_linear { Exposure::Stops(0.0) } else { exposure(scene, plan.files.exposure) };
-    Metering::new(scene, exposure, plan.settings.transparent, behind)
+    Metering::new(scene, exposure, plan.settings.transparent, applied.behind)
+        .of_highlights(applied.outdoors && !is_linear, plan.files.exposure)
 }
 
 /// The device that was chosen. That no CUDA device was, is only said where one could be expected, or to those who ask.

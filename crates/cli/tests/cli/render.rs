@@ -420,3 +420,51 @@ fn pixels_that_are_not_finite_are_counted_with_a_warning() {
     assert!(pixels > 0, "{said}");
     assert!(said.contains(&format!("warning: {pixels} of 64 pixels have infinite or undefined colours")), "{said}");
 }
+
+/// A ball of 16 by 8 faces with smooth normals, or without any.
+fn ball(normals: bool) -> String {
+    let ring = |row: u32| (0..16).map(move |column| [f64::from(row) / 8.0, f64::from(column) / 8.0]);
+    let point = |[down, around]: [f64; 2]| {
+        let [(sin, cos), (aside, before)] = [down, around].map(|turn| (turn * std::f64::consts::PI).sin_cos());
+        format!("{} {cos} {}\n", sin * before, sin * aside)
+    };
+    let points: Vec<String> = (0..=8).flat_map(ring).map(point).collect();
+    let mut text: String = points.iter().map(|point| format!("v {point}vn {point}")).collect();
+    let corner = |row: usize, column: usize| {
+        let index = row * 16 + column % 16 + 1;
+        if normals { format!("{index}//{index}") } else { index.to_string() }
+    };
+    for (row, column) in (0..8).flat_map(|row| (0..16).map(move |column| (row, column))) {
+        let [a, b, c, d] = [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(down, on)| corner(row + down, column + on));
+        text += &if row > 0 { format!("f {a} {b} {d}\n") } else { String::new() };
+        text += &if row < 7 { format!("f {b} {c} {d}\n") } else { String::new() };
+    }
+    text
+}
+
+#[test]
+fn a_coarse_smooth_ball_has_no_teeth_where_it_turns_from_the_light() {
+    let place = Place::new();
+    // The largest rise and the largest fall from a pixel to the next, going away from the light.
+    let steps = |text: &str| {
+        place.write("ball.obj", text);
+        let view = ["--camera", "0,0.6,5;0,0,0;28", "--light", "-300,120,100;1", "--ambient", "0", "--no-studio"];
+        let base =
+            ["render", "ball.obj", "-o", "a.exr", "--size", "256x256", "--aa", "1", "--up", "y", "--smooth", "off"];
+        place.good(&[&base[..], &view].concat());
+        let frame = Frame::load(place.path("a.exr")).unwrap();
+        let mut most = [0.0f32; 2];
+        for row in frame.color().chunks(256).skip(40).take(176) {
+            let brightest = (0..256).max_by(|&a, &b| row[a][0].total_cmp(&row[b][0])).unwrap();
+            for pair in row[brightest..].windows(2) {
+                let step = pair[1][0] - pair[0][0];
+                most = [most[0].max(step), most[1].max(-step)];
+            }
+        }
+        most
+    };
+    let [rise, fall] = steps(&ball(true));
+    assert!(rise < 0.002 && fall < 0.05, "{rise} {fall}");
+    let [_, fall] = steps(&ball(false));
+    assert!(fall > 0.1, "{fall}: facets have edges");
+}

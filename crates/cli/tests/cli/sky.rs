@@ -107,3 +107,47 @@ fn what_cannot_surround_a_scene_is_refused() {
         assert!(message.contains(expected) && message.contains("wrong.toml:"), "{text}: {message}");
     }
 }
+
+/// A cube as a file of another program.
+const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\n\
+                    f 1 5 8 4\nf 2 3 7 6\n";
+
+#[test]
+fn a_model_under_a_sky_stands_on_a_ground_before_the_horizon() {
+    let place = place();
+    place.write("cube.obj", CUBE);
+    let base = ["render", "cube.obj", "--size", "32x32", "--quality", "draft", "--up", "y"];
+    let picture = |flags: &[&str]| {
+        let done = place.good(&[&base[..], &["-o", "a.exr"], flags].concat());
+        (place.read("a.exr"), done.stderr)
+    };
+    let (clear, notes) = picture(&["--sky", "clear"]);
+    assert!(notes.contains("stands on a ground"), "{notes}");
+    let frame = Frame::load(place.path("a.exr")).unwrap();
+    let [sky, ground] = [frame.color()[0], frame.color()[31 * 32]];
+    assert!(sky[2] > 1.2 * sky[0] && ground[2] < ground[0], "{sky:?} {ground:?}: blue above, not below");
+    assert_eq!(picture(&["--sky", "clear", "--ground"]).0, clear, "there is a ground already");
+    // As it is seen by numbers and with a camera of one's own.
+    let (plain, notes) = picture(&["--sky", "clear", "--no-studio"]);
+    assert!(plain != clear && !notes.contains("stands on a ground"), "{notes}");
+    for flags in [&["--camera", "2,2,5;0,0,0;40"][..], &["--background", "0.5"]] {
+        let flags = [&["--sky", "clear"], flags].concat();
+        assert_eq!(picture(&flags).0, picture(&[&flags[..], &["--no-studio"]].concat()).0, "{flags:?}");
+    }
+}
+
+#[test]
+fn a_bright_sky_is_not_clipped_unless_that_is_asked_for() {
+    let place = place();
+    place.write("cube.obj", CUBE);
+    let corner = |flags: &[&str]| {
+        let base =
+            ["render", "cube.obj", "--size", "16x16", "--quality", "draft", "-o", "a.png", "--sky", "uniform;color=2"];
+        place.good(&[&base[..], flags].concat());
+        Frame::load(place.path("a.png")).unwrap().color()[0][0]
+    };
+    let shown = corner(&[]);
+    assert!((0.82..0.88).contains(&shown), "{shown}");
+    assert_eq!(corner(&["--crop", "0,0,4,4"]), shown, "that of the whole image");
+    assert_eq!([corner(&["--exposure", "0"]), corner(&["--no-studio"])], [1.0; 2]);
+}

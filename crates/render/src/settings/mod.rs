@@ -124,10 +124,10 @@ impl Settings {
         Settings { bounces, ..self }
     }
 
-    /// The depth of mirror reflections in a scene: at least 1 in a [studio](lightmesh_scene::Lighting::Studio), whose surroundings are there to be
-    /// mirrored.
+    /// The depth of mirror reflections in a scene: at least 1 in a [studio](lightmesh_scene::Lighting::Studio) and
+    /// [outdoors](lightmesh_scene::Scene::complete_outdoors), where the surroundings are there to be mirrored.
     pub fn bounces_in(&self, scene: &Scene) -> u32 {
-        self.bounces.max(u32::from(scene.lights.studio))
+        self.bounces.max(u32::from(scene.lights.studio || scene.lights.outdoors))
     }
 
     /// Width and height in pixels.

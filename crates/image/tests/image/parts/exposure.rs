@@ -40,3 +40,19 @@ fn what_is_black_or_no_number_does_not_count() {
     assert_eq!(frame(&[0.0, f32::NAN, f32::INFINITY, -1.0]).auto_exposure(), 0.0);
     assert_eq!(frame(&[0.0, f32::NAN, 0.09]).auto_exposure(), 1.0);
 }
+
+#[test]
+fn highlights_are_brought_back_and_little_is_brightened() {
+    assert_eq!(frame(&[0.01; 9]).highlight_exposure(), 0.5);
+    assert_eq!(frame(&[0.0; 9]).highlight_exposure(), 0.5);
+    assert_eq!(frame(&[0.85; 9]).highlight_exposure(), 0.0);
+    assert_eq!(frame(&[1.7; 9]).highlight_exposure(), -1.0);
+    // A hundredth may be white.
+    let mut values = [0.1; 1000];
+    values[..9].fill(100.0);
+    assert_eq!(frame(&values).highlight_exposure(), 0.5);
+    values[..11].fill(100.0);
+    assert!(frame(&values).highlight_exposure() < -6.0);
+    let blue = Frame::new(1, 1, vec![[0.0, 0.0, 3.4]]).unwrap();
+    assert_eq!(blue.highlight_exposure(), -2.0);
+}

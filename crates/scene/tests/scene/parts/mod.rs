@@ -23,6 +23,7 @@ mod names;
 mod objects;
 mod opacity;
 mod open;
+mod outdoors;
 mod principled;
 mod quote;
 mod shapes;
