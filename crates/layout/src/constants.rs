@@ -295,8 +295,13 @@ constants! {
     LARGEST_EXPONENT: f32 = 87.0;
     /// A ray goes through so many surfaces.
     MOST_THROUGHS: u32 = 64;
-    /// Where surfaces let rays through, a ray always goes on if at least this share of what it sees reaches the pixel; others are thinned.
-    LEAST_THICK: f32 = 1.0 / 256.0;
+    /// Where surfaces let rays through, a ray always goes on from this depth if at least this share of what it sees reaches the pixel; others are
+    /// thinned.
+    LEAST_THICK_DEEP: f32 = 1.0 / 256.0;
+    /// The same for rays that met fewer surfaces: what a single thing of glass shows is smooth, also of bright lamps.
+    LEAST_THICK: f32 = 1.0 / 4096.0;
+    /// How many surfaces a ray met that counts as deep.
+    DEEP: u32 = 6;
     /// Shares are counted in parts of that: so many bits.
     THIN_BITS: u32 = 16;
     /// Less is nothing: one of these parts.

@@ -196,8 +196,13 @@
 #define LARGEST_EXPONENT 0x1.5cp6f
 // A ray goes through so many surfaces.
 #define MOST_THROUGHS 64u
-// Where surfaces let rays through, a ray always goes on if at least this share of what it sees reaches the pixel; others are thinned.
-#define LEAST_THICK 0x1p-8f
+// Where surfaces let rays through, a ray always goes on from this depth if at least this share of what it sees reaches the pixel; others are
+// thinned.
+#define LEAST_THICK_DEEP 0x1p-8f
+// The same for rays that met fewer surfaces: what a single thing of glass shows is smooth, also of bright lamps.
+#define LEAST_THICK 0x1p-12f
+// How many surfaces a ray met that counts as deep.
+#define DEEP 6u
 // Shares are counted in parts of that: so many bits.
 #define THIN_BITS 16u
 // Less is nothing: one of these parts.

@@ -141,7 +141,8 @@ fn faint_ways_between_panes_count_as_much_as_they_do() {
             let colors = frame.color().iter().map(|&color| Vec3::from(color));
             let mean = colors.clone().sum::<Vec3>() / colors.len() as f32;
             let most = colors.map(|color| (color - expected).abs().max_element()).fold(0.0, f32::max);
-            assert!((mean - expected).abs().max_element() < 1e-3, "{count}, {aa}: {mean} instead of {expected}");
+            // The mean of pixels that each err by about 0.01.
+            assert!((mean - expected).abs().max_element() < 2e-3, "{count}, {aa}: {mean} instead of {expected}");
             // Up to 64 depths with a standard deviation of 0.4/256 each.
             assert!(most < 0.08, "{count}, {aa}: a pixel errs by {most}");
         }

@@ -31,10 +31,13 @@ DEVICE Shares all_shares_of(const MirrorRays &args, unsigned ray) {
     return Shares{goes ? through : none.through, returns ? mirrored : none.mirrored};
 }
 
-// The share of a thin ray of this weight, in units of LEAST_THICK 2^-16; 0 of others.
-DEVICE unsigned part_of(Vec3 weight) {
+// T: rays of a larger share always go on.
+DEVICE float least_thick(const Rays &rays) { return rays.depth < DEEP ? LEAST_THICK : LEAST_THICK_DEEP; }
+
+// The share of a thin ray of this weight, in units of T 2^-16; 0 of others.
+DEVICE unsigned part_of(Vec3 weight, float least) {
     const float share = max_element(weight);
-    return share >= LEAST_THICK ? 0 : (unsigned)(share * ((float)(1u << THIN_BITS) / LEAST_THICK));
+    return share >= least ? 0 : (unsigned)(share * ((float)(1u << THIN_BITS) / least));
 }
 
 // The offset of a pixel: twin of thinning.rs.
@@ -49,8 +52,8 @@ DEVICE unsigned offset_of(const Rays &rays, unsigned pixel) {
 }
 
 // The weight with which the next ray of a pixel goes on, or zero; `sum` are the offset and the parts of those before.
-DEVICE Vec3 thinned(Vec3 weight, unsigned &sum) {
-    const unsigned part = part_of(weight), before = sum;
+DEVICE Vec3 thinned(Vec3 weight, float least, unsigned &sum) {
+    const unsigned part = part_of(weight, least), before = sum;
     if (part == 0)
         return weight;
     sum += part;
@@ -66,8 +69,9 @@ DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
     unsigned sum = offset_of(args.rays, pixel);
     for (unsigned before = ray; before-- > 0 && pixel_of(args.rays, before) == pixel;)
         sum += args.thin[before];
-    const Vec3 through = thinned(all.through, sum);
-    return Shares{through, thinned(all.mirrored, sum)};
+    const float least = least_thick(args.rays);
+    const Vec3 through = thinned(all.through, least, sum);
+    return Shares{through, thinned(all.mirrored, least, sum)};
 }
 
 // The cone that the mirror at a surface point reflects.
@@ -101,7 +105,8 @@ KERNEL(mirror_rays_thin, MirrorRays, BLOCK, 4) {
     if (ray >= args.rays.count)
         return;
     const Shares shares = all_shares_of(args, ray);
-    args.thin[ray] = part_of(shares.through) + part_of(shares.mirrored);
+    const float least = least_thick(args.rays);
+    args.thin[ray] = part_of(shares.through, least) + part_of(shares.mirrored, least);
 }
 
 KERNEL(mirror_rays_count, MirrorRays, BLOCK, 4) {

@@ -1,7 +1,8 @@
 //! Which of many faint rays of a pixel go on.
 //!
 //! Glass that mirrors and lets through makes two rays of each, and panes behind each other soon make hundreds of which little reaches the pixel. Rays
-//! of a share w of at least [`LEAST_THICK`] = T, those of all channels counting as the largest, always go on. Of the others of a pixel at one depth
+//! of a share w of at least T, those of all channels counting as the largest, always go on: [`LEAST_THICK`], or [`LEAST_THICK_DEEP`] of rays that met
+//! [`DEEP`] surfaces, which are many. Of the others of a pixel at one depth
 //! those go on, in their order, where
 //!
 //! ```text
@@ -17,13 +18,17 @@
 //! Twin: `kernel.cu`. Weights are whole numbers of T 2⁻¹⁶, so that sums are the same in any order.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LEAST_THICK, THIN_ACROSS, THIN_BITS, THIN_DEEPER, THIN_DOWN};
+use lightmesh_layout::constants::{
+    DEEP, LEAST_THICK, LEAST_THICK_DEEP, THIN_ACROSS, THIN_BITS, THIN_DEEPER, THIN_DOWN,
+};
 
 use crate::data::rays::RayList;
 
 /// What goes on of the rays of one pixel after the other.
 pub(super) struct Thinning<'a> {
     list: &'a RayList,
+    /// T.
+    least: f32,
     /// The pixel whose rays are at hand.
     pixel: Option<u32>,
     /// Its offset, and the shares of its thin rays up to now.
@@ -33,13 +38,14 @@ pub(super) struct Thinning<'a> {
 impl<'a> Thinning<'a> {
     /// For rays that go on from those of `list`.
     pub(super) fn new(list: &'a RayList) -> Thinning<'a> {
-        Thinning { list, pixel: None, sum: 0 }
+        let least = if list.depth < DEEP { LEAST_THICK } else { LEAST_THICK_DEEP };
+        Thinning { list, least, pixel: None, sum: 0 }
     }
 
     /// The weight with which the next ray from ray `index` goes on, if it does.
     pub(super) fn weight(&mut self, index: usize, weight: Vec3) -> Option<Vec3> {
         let share = weight.max_element();
-        if share >= LEAST_THICK {
+        if share >= self.least {
             return Some(weight);
         }
         let pixel = self.list.pixels[index];
@@ -47,7 +53,7 @@ impl<'a> Thinning<'a> {
             (self.pixel, self.sum) = (Some(pixel), self.offset(pixel));
         }
         let before = self.sum;
-        let part = part_of(share);
+        let part = part_of(share, self.least);
         self.sum = before.wrapping_add(part);
         (self.sum >> THIN_BITS != before >> THIN_BITS).then(|| weight * ((1 << THIN_BITS) as f32 / part as f32))
     }
@@ -62,6 +68,6 @@ impl<'a> Thinning<'a> {
 }
 
 /// A share in units of T 2⁻¹⁶.
-fn part_of(share: f32) -> u32 {
-    (share * ((1 << THIN_BITS) as f32 / LEAST_THICK)) as u32
+fn part_of(share: f32, least: f32) -> u32 {
+    (share * ((1 << THIN_BITS) as f32 / least)) as u32
 }

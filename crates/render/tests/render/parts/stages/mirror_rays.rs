@@ -1,7 +1,7 @@
 //! Directions and weights of mirrored rays.
 
 use glam::Vec3;
-use lightmesh_layout::constants::LEAST_THICK;
+use lightmesh_layout::constants::{DEEP, LEAST_THICK, LEAST_THICK_DEEP};
 use lightmesh_render::accel::{Hit, Ray};
 use lightmesh_render::backend::Wave;
 use lightmesh_render::internals::stages::mirror_rays;
@@ -22,7 +22,7 @@ fn mirrored(material: Material, normals: Option<Vec3>, list: &RayList) -> RayLis
     let mut hits = vec![Hit::MISS; list.rays.len()];
     scene.geometry.accelerator.closest_hits(&list.rays, &mut hits);
     let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
-    let list = &RayList { bounces: 1, ..list.clone() };
+    let list = &RayList { bounces: list.depth + 1, ..list.clone() };
     mirror_rays(&Wave { job: &job, scene: &scene, rays: list, hits: &hits, lights: LightGroup::ALL, parts: 1 })
 }
 
@@ -71,8 +71,8 @@ fn smooth_normals_turn_the_mirror_but_not_into_the_surface() {
     assert!(next.rays.iter().all(|ray| ray.direction.y > 0.0), "{:?}", next.rays);
 }
 
-/// Many rays of this weight, `each` of each pixel of an image of 64 × 64, onto a floor of this material.
-fn faint(material: Material, weight: f32, each: usize) -> RayList {
+/// Many rays of this depth and weight, `each` of each pixel of an image of 64 × 64, onto a floor of this material.
+fn faint(material: Material, depth: u32, weight: f32, each: usize) -> RayList {
     let ray = Ray { origin: Vec3::new(0.5, 2.0, 0.25), direction: Vec3::new(0.6, -0.8, 0.0), t_max: f32::INFINITY };
     let count = 64 * 64 * each;
     let list = RayList {
@@ -81,6 +81,7 @@ fn faint(material: Material, weight: f32, each: usize) -> RayList {
         weights: vec![Vec3::splat(weight); count],
         samples: vec![1; count],
         window: Window::all([64; 2]),
+        depth,
         ..RayList::default()
     };
     mirrored(material, None, &list)
@@ -96,9 +97,11 @@ fn carried(list: &RayList) -> Vec<f64> {
 #[test]
 fn faint_rays_are_thinned_and_carry_what_they_did() {
     let glass = mirror(Vec3::ONE).with_opacity(Opacity::blend(0.5));
-    let thick = f64::from(LEAST_THICK);
-    for (weight, each) in [(1.0 / 1000.0, 13), (1.0 / 5000.0, 40), (1.0 / 20_000.0, 7)] {
-        let next = faint(glass.clone(), weight, each);
+    let deep = [(1.0 / 1000.0, 13), (1.0 / 5000.0, 40), (1.0 / 20_000.0, 7)].map(|rays| (DEEP, LEAST_THICK_DEEP, rays));
+    let other = [(1.0 / 5000.0, 40), (1.0 / 90_000.0, 30)].map(|rays| (DEEP - 1, LEAST_THICK, rays));
+    for (depth, thick, (weight, each)) in deep.into_iter().chain(other) {
+        let thick = f64::from(thick);
+        let next = faint(glass.clone(), depth, weight, each);
         let (sums, expected) = (carried(&next), f64::from(weight) * each as f64);
         for &sum in &sums {
             assert!((sum - expected).abs() < 1.01 * thick, "a pixel errs by less than one ray: {sum}, {expected}");
@@ -114,10 +117,12 @@ fn faint_rays_are_thinned_and_carry_what_they_did() {
 fn what_is_seen_well_is_not_thinned() {
     let half = |next: &RayList, share: f32| next.weights.iter().all(|&weight| weight == Vec3::splat(share));
     let glass = mirror(Vec3::ONE).with_opacity(Opacity::blend(0.5));
-    let next = faint(glass, 2.0 * LEAST_THICK, 3);
-    assert!(next.rays.len() == 2 * 3 * 64 * 64 && half(&next, LEAST_THICK), "both rays of each go on as they are");
+    for (depth, thick) in [(0, LEAST_THICK), (DEEP - 1, LEAST_THICK), (DEEP, LEAST_THICK_DEEP)] {
+        let next = faint(glass.clone(), depth, 2.0 * thick, 3);
+        assert!(next.rays.len() == 2 * 3 * 64 * 64 && half(&next, thick), "both rays of each go on as they are");
+    }
     // Opaque mirrors make one ray each.
-    let next = faint(mirror(Vec3::splat(0.5)), 1.0 / 1024.0, 3);
+    let next = faint(mirror(Vec3::splat(0.5)), 0, 1.0 / 1024.0, 3);
     assert!(next.rays.len() == 3 * 64 * 64 && half(&next, 1.0 / 2048.0));
-    assert!(faint(mirror(Vec3::splat(0.5)), 1.0 / 4096.0, 3).rays.is_empty());
+    assert!(faint(mirror(Vec3::splat(0.5)), 0, 1.0 / 4096.0, 3).rays.is_empty());
 }
