@@ -539,7 +539,20 @@ constants! {
     /// from some: with 1, light is too bright before walls, with 2 too dark.
     NEAR_REACH: f32 = 1.25;
     /// Sites cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
-    EVEN: f32 = 0.6;
+    EVEN: f32 = 0.45;
+    /// This share of a site's second rays goes where its first ones see different things; the rest goes everywhere.
+    GUIDED: f32 = 0.5;
+    /// How many rays beside a block tell how different what is seen in it is.
+    GUIDE_RING: u32 = 1;
+    /// A site's first ray counts as much as this many of its second ones, which go where they are needed.
+    FIRST_COUNT: f32 = 0.25;
+    /// Near rays see a site's surroundings as crowded where the mean inverse distance of what they hit, times the size of the coarse cells, is more:
+    /// then it asks coarse cells of half the size.
+    CROWDED: f32 = 0.5;
+    /// To ask cells that are smaller once more, that must be more than this many times as much.
+    CROWDED_AGAIN: f32 = 4.0;
+    /// By how many levels coarse cells may become smaller.
+    CLOSER: u32 = 2;
     /// The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.
     SKY_CONE: f32 = 0.25;
     /// What a ray hits is asked for light in a cell of this share of the distance.

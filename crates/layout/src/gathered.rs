@@ -224,6 +224,8 @@ records! {
         list: Out<ListedRay>,
         /// Shares of the mean radiance by the cosine.
         weights: Out<f32>,
+        /// How many rays of an even fan each stands for.
+        areas: Out<f32>,
         /// What the rays hit.
         hits: Out<Hit>,
         /// What they see.
@@ -232,6 +234,8 @@ records! {
         levels: Out<i32>,
         /// The mean luminance that the rays of each site see: `brighten_fans`.
         brightness: Out<f32>,
+        /// By site and block of directions: the rays of all blocks up to this one; null if they are spread evenly.
+        ends: In<u32>,
         /// Number of sites.
         count: u32,
         /// The side of the square that the rays of a site form.
@@ -242,8 +246,36 @@ records! {
         is_near: u32,
         /// 1: there are lights for what lamps emit.
         lamps: u32,
+        /// Blocks along each side of the square of directions.
+        blocks: u32,
+    }
+
+    /// `guide_fans`: one warp per site.
+    GuideFans {
+        /// The first rays.
+        fans: Fans,
+        /// The sites that see different things: numbers of this batch.
+        uneven: In<u32>,
+        /// Result: by site and block, the second rays of all blocks up to this one.
+        ends: Out<u32>,
+        /// The place of the first one in `uneven`.
+        first: u32,
+        /// How many there are.
+        count: u32,
+        /// Second rays of a site.
+        rays: u32,
         /// Padding to a multiple of eight bytes.
         spare: u32,
+    }
+
+    /// `come_closer`: one thread per site.
+    ComeCloser {
+        /// The near rays.
+        fans: Fans,
+        /// The sites; their levels change.
+        sites: Out<Site>,
+        /// The same as places that ask.
+        places: Out<LightPlace>,
     }
 
     /// `name_nodes`, `hide_nodes` and `list_nodes`: one thread per ray; `place_nodes`: one warp per node; `list_unlinked` and `sum_nodes`: one thread per

@@ -419,7 +419,20 @@
 // from some: with 1, light is too bright before walls, with 2 too dark.
 #define NEAR_REACH 0x1.4p0f
 // Sites cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
-#define EVEN 0x1.333334p-1f
+#define EVEN 0x1.ccccccp-2f
+// This share of a site's second rays goes where its first ones see different things; the rest goes everywhere.
+#define GUIDED 0x1p-1f
+// How many rays beside a block tell how different what is seen in it is.
+#define GUIDE_RING 1u
+// A site's first ray counts as much as this many of its second ones, which go where they are needed.
+#define FIRST_COUNT 0x1p-2f
+// Near rays see a site's surroundings as crowded where the mean inverse distance of what they hit, times the size of the coarse cells, is more:
+// then it asks coarse cells of half the size.
+#define CROWDED 0x1p-1f
+// To ask cells that are smaller once more, that must be more than this many times as much.
+#define CROWDED_AGAIN 0x1p2f
+// By how many levels coarse cells may become smaller.
+#define CLOSER 2u
 // The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.
 #define SKY_CONE 0x1p-2f
 // What a ray hits is asked for light in a cell of this share of the distance.
@@ -1433,18 +1446,20 @@ struct alignas(8) Fans {
     const Site *sites;
     ListedRay *list;
     float *weights;
+    float *areas;
     Hit *hits;
     SeenRay *seen;
     int *levels;
     float *brightness;
+    const unsigned *ends;
     unsigned count;
     unsigned side;
     float reach;
     unsigned is_near;
     unsigned lamps;
-    unsigned spare;
+    unsigned blocks;
 };
-static_assert(sizeof(Fans) == 904, "size of Fans");
+static_assert(sizeof(Fans) == 920, "size of Fans");
 static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
 static_assert(PLACE_OF(Fans, rays) == 680, "place of Fans::rays");
 static_assert(PLACE_OF(Fans, sampling) == 800, "place of Fans::sampling");
@@ -1452,16 +1467,46 @@ static_assert(PLACE_OF(Fans, tally) == 816, "place of Fans::tally");
 static_assert(PLACE_OF(Fans, sites) == 824, "place of Fans::sites");
 static_assert(PLACE_OF(Fans, list) == 832, "place of Fans::list");
 static_assert(PLACE_OF(Fans, weights) == 840, "place of Fans::weights");
-static_assert(PLACE_OF(Fans, hits) == 848, "place of Fans::hits");
-static_assert(PLACE_OF(Fans, seen) == 856, "place of Fans::seen");
-static_assert(PLACE_OF(Fans, levels) == 864, "place of Fans::levels");
-static_assert(PLACE_OF(Fans, brightness) == 872, "place of Fans::brightness");
-static_assert(PLACE_OF(Fans, count) == 880, "place of Fans::count");
-static_assert(PLACE_OF(Fans, side) == 884, "place of Fans::side");
-static_assert(PLACE_OF(Fans, reach) == 888, "place of Fans::reach");
-static_assert(PLACE_OF(Fans, is_near) == 892, "place of Fans::is_near");
-static_assert(PLACE_OF(Fans, lamps) == 896, "place of Fans::lamps");
-static_assert(PLACE_OF(Fans, spare) == 900, "place of Fans::spare");
+static_assert(PLACE_OF(Fans, areas) == 848, "place of Fans::areas");
+static_assert(PLACE_OF(Fans, hits) == 856, "place of Fans::hits");
+static_assert(PLACE_OF(Fans, seen) == 864, "place of Fans::seen");
+static_assert(PLACE_OF(Fans, levels) == 872, "place of Fans::levels");
+static_assert(PLACE_OF(Fans, brightness) == 880, "place of Fans::brightness");
+static_assert(PLACE_OF(Fans, ends) == 888, "place of Fans::ends");
+static_assert(PLACE_OF(Fans, count) == 896, "place of Fans::count");
+static_assert(PLACE_OF(Fans, side) == 900, "place of Fans::side");
+static_assert(PLACE_OF(Fans, reach) == 904, "place of Fans::reach");
+static_assert(PLACE_OF(Fans, is_near) == 908, "place of Fans::is_near");
+static_assert(PLACE_OF(Fans, lamps) == 912, "place of Fans::lamps");
+static_assert(PLACE_OF(Fans, blocks) == 916, "place of Fans::blocks");
+
+struct alignas(8) GuideFans {
+    Fans fans;
+    const unsigned *uneven;
+    unsigned *ends;
+    unsigned first;
+    unsigned count;
+    unsigned rays;
+    unsigned spare;
+};
+static_assert(sizeof(GuideFans) == 952, "size of GuideFans");
+static_assert(PLACE_OF(GuideFans, fans) == 0, "place of GuideFans::fans");
+static_assert(PLACE_OF(GuideFans, uneven) == 920, "place of GuideFans::uneven");
+static_assert(PLACE_OF(GuideFans, ends) == 928, "place of GuideFans::ends");
+static_assert(PLACE_OF(GuideFans, first) == 936, "place of GuideFans::first");
+static_assert(PLACE_OF(GuideFans, count) == 940, "place of GuideFans::count");
+static_assert(PLACE_OF(GuideFans, rays) == 944, "place of GuideFans::rays");
+static_assert(PLACE_OF(GuideFans, spare) == 948, "place of GuideFans::spare");
+
+struct alignas(8) ComeCloser {
+    Fans fans;
+    Site *sites;
+    LightPlace *places;
+};
+static_assert(sizeof(ComeCloser) == 936, "size of ComeCloser");
+static_assert(PLACE_OF(ComeCloser, fans) == 0, "place of ComeCloser::fans");
+static_assert(PLACE_OF(ComeCloser, sites) == 920, "place of ComeCloser::sites");
+static_assert(PLACE_OF(ComeCloser, places) == 928, "place of ComeCloser::places");
 
 struct alignas(8) Bounce {
     Scene scene;
@@ -1481,23 +1526,23 @@ struct alignas(8) Bounce {
     unsigned count;
     unsigned insist;
 };
-static_assert(sizeof(Bounce) == 1704, "size of Bounce");
+static_assert(sizeof(Bounce) == 1720, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
 static_assert(PLACE_OF(Bounce, fans) == 680, "place of Bounce::fans");
-static_assert(PLACE_OF(Bounce, names) == 1584, "place of Bounce::names");
-static_assert(PLACE_OF(Bounce, nodes) == 1624, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, sites) == 1632, "place of Bounce::sites");
-static_assert(PLACE_OF(Bounce, links) == 1640, "place of Bounce::links");
-static_assert(PLACE_OF(Bounce, listed) == 1648, "place of Bounce::listed");
-static_assert(PLACE_OF(Bounce, listed_count) == 1656, "place of Bounce::listed_count");
-static_assert(PLACE_OF(Bounce, unlinked) == 1664, "place of Bounce::unlinked");
-static_assert(PLACE_OF(Bounce, unlinked_count) == 1672, "place of Bounce::unlinked_count");
-static_assert(PLACE_OF(Bounce, linked) == 1680, "place of Bounce::linked");
-static_assert(PLACE_OF(Bounce, order) == 1684, "place of Bounce::order");
-static_assert(PLACE_OF(Bounce, finer) == 1688, "place of Bounce::finer");
-static_assert(PLACE_OF(Bounce, first) == 1692, "place of Bounce::first");
-static_assert(PLACE_OF(Bounce, count) == 1696, "place of Bounce::count");
-static_assert(PLACE_OF(Bounce, insist) == 1700, "place of Bounce::insist");
+static_assert(PLACE_OF(Bounce, names) == 1600, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1640, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, sites) == 1648, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, links) == 1656, "place of Bounce::links");
+static_assert(PLACE_OF(Bounce, listed) == 1664, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1672, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, unlinked) == 1680, "place of Bounce::unlinked");
+static_assert(PLACE_OF(Bounce, unlinked_count) == 1688, "place of Bounce::unlinked_count");
+static_assert(PLACE_OF(Bounce, linked) == 1696, "place of Bounce::linked");
+static_assert(PLACE_OF(Bounce, order) == 1700, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, finer) == 1704, "place of Bounce::finer");
+static_assert(PLACE_OF(Bounce, first) == 1708, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1712, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, insist) == 1716, "place of Bounce::insist");
 
 struct alignas(8) GatherFar {
     Fans fans;
@@ -1508,14 +1553,14 @@ struct alignas(8) GatherFar {
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherFar) == 944, "size of GatherFar");
+static_assert(sizeof(GatherFar) == 960, "size of GatherFar");
 static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
-static_assert(PLACE_OF(GatherFar, far) == 904, "place of GatherFar::far");
-static_assert(PLACE_OF(GatherFar, owners) == 912, "place of GatherFar::owners");
-static_assert(PLACE_OF(GatherFar, uneven) == 920, "place of GatherFar::uneven");
-static_assert(PLACE_OF(GatherFar, uneven_count) == 928, "place of GatherFar::uneven_count");
-static_assert(PLACE_OF(GatherFar, first) == 936, "place of GatherFar::first");
-static_assert(PLACE_OF(GatherFar, before) == 940, "place of GatherFar::before");
+static_assert(PLACE_OF(GatherFar, far) == 920, "place of GatherFar::far");
+static_assert(PLACE_OF(GatherFar, owners) == 928, "place of GatherFar::owners");
+static_assert(PLACE_OF(GatherFar, uneven) == 936, "place of GatherFar::uneven");
+static_assert(PLACE_OF(GatherFar, uneven_count) == 944, "place of GatherFar::uneven_count");
+static_assert(PLACE_OF(GatherFar, first) == 952, "place of GatherFar::first");
+static_assert(PLACE_OF(GatherFar, before) == 956, "place of GatherFar::before");
 
 struct alignas(8) GatherFine {
     Fans fans;
@@ -1529,17 +1574,17 @@ struct alignas(8) GatherFine {
     unsigned count;
     unsigned spare;
 };
-static_assert(sizeof(GatherFine) == 1760, "size of GatherFine");
+static_assert(sizeof(GatherFine) == 1776, "size of GatherFine");
 static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
-static_assert(PLACE_OF(GatherFine, lookup) == 904, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, far) == 1712, "place of GatherFine::far");
-static_assert(PLACE_OF(GatherFine, fine) == 1720, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, alone) == 1728, "place of GatherFine::alone");
-static_assert(PLACE_OF(GatherFine, alone_count) == 1736, "place of GatherFine::alone_count");
-static_assert(PLACE_OF(GatherFine, first) == 1744, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_alone) == 1748, "place of GatherFine::first_alone");
-static_assert(PLACE_OF(GatherFine, count) == 1752, "place of GatherFine::count");
-static_assert(PLACE_OF(GatherFine, spare) == 1756, "place of GatherFine::spare");
+static_assert(PLACE_OF(GatherFine, lookup) == 920, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, far) == 1728, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, fine) == 1736, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, alone) == 1744, "place of GatherFine::alone");
+static_assert(PLACE_OF(GatherFine, alone_count) == 1752, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, first) == 1760, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_alone) == 1764, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, count) == 1768, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1772, "place of GatherFine::spare");
 
 struct alignas(8) GatherPoints {
     Scene scene;

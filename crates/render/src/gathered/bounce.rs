@@ -261,7 +261,7 @@ impl Bounce {
         let new: Vec<u32> = nodes.iter().copied().filter(|&node| self.nodes[node as usize].links.is_none()).collect();
         for new in new.chunks(scene.fans_at_once(FAN)) {
             let of = |&node: &u32| (&self.nodes[node as usize].site, f32::INFINITY);
-            let cast = scene.cast(new.iter().map(of), FAN);
+            let cast = scene.cast(new.iter().map(of), FAN, None);
             let seen = scene.seen(&cast);
             let fans = seen.par_chunks_exact(FAN.len()).zip(cast.weights.par_chunks_exact(FAN.len()));
             let brightness: Vec<f32> = fans.map(|(seen, weights)| brightness(seen, weights)).collect();

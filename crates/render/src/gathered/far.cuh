@@ -12,28 +12,28 @@ struct LaneBins {
 
 static_assert(BINS == 2 * WARP, "two bins of each lane");
 
-DEVICE void take_bin(LaneBins &bins, unsigned bin, Vec3 radiance) {
+DEVICE void take_bin(LaneBins &bins, unsigned bin, Vec3 radiance, float count) {
     UNROLL
     for (unsigned k = 0; k < BINS / WARP; ++k)
         if (bin == k * WARP + lane_of_thread()) {
-            bins.sums[k] = bins.sums[k] + radiance;
-            bins.counts[k] += 1.0f;
+            bins.sums[k] = bins.sums[k] + count * radiance;
+            bins.counts[k] += count;
         }
 }
 
-// Writes a lane's bins, or adds them to what is there.
+// Writes a lane's bins, or adds them to what first rays found.
 DEVICE void store_bins(const LaneBins &bins, Bins &all, bool joins) {
     UNROLL
     for (unsigned k = 0; k < BINS / WARP; ++k) {
         const unsigned bin = k * WARP + lane_of_thread();
-        all.sums[bin] = joins ? all.sums[bin] + bins.sums[k] : bins.sums[k];
-        all.counts[bin] = joins ? all.counts[bin] + bins.counts[k] : bins.counts[k];
+        all.sums[bin] = joins ? FIRST_COUNT * all.sums[bin] + bins.sums[k] : bins.sums[k];
+        all.counts[bin] = joins ? FIRST_COUNT * all.counts[bin] + bins.counts[k] : bins.counts[k];
     }
 }
 
-// Adds light that was found by `others` rays to what `count` rays found before.
+// Adds light that was found by `others` guided rays to what `count` rays found before.
 DEVICE SurfaceLight joined(const SurfaceLight &before, const SurfaceLight &light, float count, float others) {
-    const float share = others / (count + others);
+    const float share = others / (FIRST_COUNT * count + others);
     SurfaceLight both = {};
     add_light(both, 1.0f - share, before, splat(0.0f));
     add_light(both, share, light, splat(0.0f));
@@ -52,15 +52,15 @@ DEVICE void far_of_site(const GatherFar &args, unsigned number) {
     float mean = 0.0f, square = 0.0f;
     for (unsigned ray = number * rays; ray < (number + 1) * rays; ++ray) {
         const Vec3 direction = load_listed(fans.list + ray, 1), radiance = fans.seen[ray].radiance;
-        const float weight = fans.weights[ray];
+        const float weight = fans.weights[ray], area = fans.areas[ray];
         take_light(light, site.normal, direction, weight * radiance);
         const unsigned bin = direction_bin(direction);
-        take_bin(all, bin, radiance);
+        take_bin(all, bin, radiance, area);
         light.most = max(light.most, radiance);
         if (load_hit(fans.hits, ray).t < near)
             has_near = true;
         else
-            take_bin(beyond, bin, radiance);
+            take_bin(beyond, bin, radiance, area);
         const float bright = luminance(radiance);
         mean += weight * bright;
         square += weight * bright * bright;

@@ -1,11 +1,12 @@
 //! What coarse sites gather: light from everywhere, by direction.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{EVEN, NEAR_CELLS};
+use lightmesh_layout::constants::{EVEN, FIRST_COUNT, NEAR_CELLS};
 use rayon::prelude::*;
 
 use super::bounce::Bounce;
 use super::cells::{Cells, Site, size_of_level};
+use super::guide::Guides;
 use super::light::{Bins, Light};
 use super::rays::{Cast, Fan};
 use super::scene::Scene;
@@ -23,15 +24,15 @@ pub(super) struct Far {
 impl Far {
     const EMPTY: Far = Far { light: Light::NONE, all: Bins::EMPTY, beyond: Bins::EMPTY, has_near: false };
 
-    /// Adds what other rays see; the numbers of rays of both are given.
+    /// Adds what guided rays see; the numbers of rays of both are given.
     fn join(&mut self, other: &Far, [count, others]: [f32; 2]) {
-        let share = others / (count + others);
+        let share = others / (FIRST_COUNT * count + others);
         let mut light = Light::default();
         light.add(1.0 - share, &self.light, Vec3::ZERO);
         light.add(share, &other.light, Vec3::ZERO);
         self.light = light;
-        self.all.join(&other.all);
-        self.beyond.join(&other.beyond);
+        self.all.join(FIRST_COUNT, &other.all);
+        self.beyond.join(FIRST_COUNT, &other.beyond);
         self.has_near |= other.has_near;
     }
 }
@@ -71,19 +72,17 @@ pub(super) fn plain(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fans: [F
 /// What some sites gather.
 fn gathered(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fans: [Fan; 2]) -> Vec<SeenByFan> {
     // 1. A few rays from each.
-    let mut first = seen_by_fans(scene, bounce, sites, fans[0]);
+    let (mut first, bright) = seen_by_fans(scene, bounce, sites, fans[0], None);
     // 2. More where these see different things.
-    let mut uneven: Vec<(&Site, &mut Far)> = sites
-        .iter()
-        .zip(&mut first)
-        .filter(|(_, seen)| seen.is_uneven())
-        .map(|(site, seen)| (site, &mut *seen.far))
-        .collect();
+    let uneven = sites.iter().zip(&mut first).zip(bright.chunks_exact(fans[0].len()));
+    let mut uneven: Vec<((&Site, &mut SeenByFan), &[f32])> = uneven.filter(|((_, seen), _)| seen.is_uneven()).collect();
     for uneven in uneven.chunks_mut(scene.fans_at_once(fans[1])) {
-        let sites: Vec<Site> = uneven.iter().map(|(site, _)| **site).collect();
-        let more = seen_by_fans(scene, bounce, &sites, fans[1]);
+        let sites: Vec<Site> = uneven.iter().map(|((site, _), _)| **site).collect();
+        let mut guides = Guides::new(fans[0]);
+        uneven.iter().for_each(|(_, bright)| guides.add(fans[0], fans[1], bright));
+        let (more, _) = seen_by_fans(scene, bounce, &sites, fans[1], Some(&guides));
         let both = uneven.par_iter_mut().zip(more);
-        both.for_each(|((_, far), more)| far.join(&more.far, fans.map(|fan| fan.len() as f32)));
+        both.for_each(|(((_, seen), _), more)| seen.far.join(&more.far, fans.map(|fan| fan.len() as f32)));
     }
     first
 }
@@ -102,29 +101,40 @@ impl SeenByFan {
     }
 }
 
-fn seen_by_fans(scene: &Scene, bounce: &mut Bounce, sites: &[Site], fan: Fan) -> Vec<SeenByFan> {
-    let cast = scene.cast(sites.iter().map(|site| (site, f32::INFINITY)), fan);
+/// What fans see, and the luminance times the weight of each ray.
+fn seen_by_fans(
+    scene: &Scene,
+    bounce: &mut Bounce,
+    sites: &[Site],
+    fan: Fan,
+    guides: Option<&Guides>,
+) -> (Vec<SeenByFan>, Vec<f32>) {
+    let cast = scene.cast(sites.iter().map(|site| (site, f32::INFINITY)), fan, guides);
     let radiance = bounce.complete(scene, &scene.seen(&cast), fan);
-    let Cast { list, hits, weights, .. } = &cast;
-    let gather = |(index, site): (usize, &Site)| {
+    let Cast { list, hits, weights, areas, .. } = &cast;
+    let mut bright = vec![0.0; radiance.len()];
+    let gather = |((index, site), bright): ((usize, &Site), &mut [f32])| {
         let near = near(site);
         let mut far = Box::new(Far::EMPTY);
         let mut luminance = [0.0; 2];
-        for ray in index * fan.len()..(index + 1) * fan.len() {
+        for (ray, bright) in (index * fan.len()..).zip(bright) {
             let (direction, radiance, weight) = (list.rays[ray].direction, radiance[ray], weights[ray]);
             far.light.take(site.point.normal, direction, weight * radiance);
             far.light.most = far.light.most.max(radiance);
-            far.all.take(direction, radiance);
+            far.all.take(direction, radiance, areas[ray]);
             if hits[ray].t < near {
                 far.has_near = true;
             } else {
-                far.beyond.take(direction, radiance);
+                far.beyond.take(direction, radiance, areas[ray]);
             }
-            let bright = crate::shading::luminance(radiance);
-            luminance[0] += weight * bright;
-            luminance[1] += weight * bright * bright;
+            let seen = crate::shading::luminance(radiance);
+            luminance[0] += weight * seen;
+            luminance[1] += weight * seen * seen;
+            *bright = weight * seen;
         }
         SeenByFan { far, luminance }
     };
-    sites.par_iter().enumerate().map(gather).collect()
+    let fans = sites.par_iter().enumerate().zip(bright.par_chunks_exact_mut(fan.len()));
+    let seen = fans.map(gather).collect();
+    (seen, bright)
 }

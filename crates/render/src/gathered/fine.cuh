@@ -5,6 +5,33 @@
 #include "gathered/lookup.cuh"
 #include "gathered/rays.cuh"
 
+// A site among near things asks smaller coarse cells: light changes fast from place to place there.
+DEVICE void move_closer(const ComeCloser &args, unsigned number) {
+    const Fans &fans = args.fans;
+    const unsigned rays = rays_of_fan(fans), start = number * rays;
+    int level = args.sites[number].level;
+    float most = CROWDED;
+    for (unsigned step = 0; step < CLOSER; ++step) {
+        const float reach = fans.reach * size_of_level(level);
+        float near = 0.0f;
+        for (unsigned ray = start; ray < start + rays; ++ray) {
+            const Hit hit = load_hit(fans.hits, ray);
+            if (hit.t < reach)
+                near += fans.weights[ray] / hit.t;
+        }
+        if (near * size_of_level(level) <= most)
+            break;
+        --level;
+        most *= CROWDED_AGAIN;
+    }
+    const float reach = fans.reach * size_of_level(level);
+    for (unsigned ray = start; ray < start + rays; ++ray)
+        if (load_hit(fans.hits, ray).t >= reach)
+            store_hit(fans.hits, ray, Hit{INFINITE, 0.0f, 0.0f, Hit::NONE});
+    args.sites[number].level = level;
+    args.places[number].level = level;
+}
+
 // What a coarse site gathers.
 DEVICE const FarLight &far_of(const GatherFine &args, const Link &link) { return args.far[args.lookup.table.values[link.site] - 1]; }
 

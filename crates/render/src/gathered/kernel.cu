@@ -78,6 +78,12 @@ KERNEL(cast_fans, Fans, BLOCK, 4) {
         cast_fan(args, site);
 }
 
+KERNEL(guide_fans, GuideFans, BLOCK, 4) {
+    unsigned site;
+    if (warp_has_work(args.count, site))
+        guide_site(args, site);
+}
+
 KERNEL(level_fans, Fans, BLOCK, 4) {
     unsigned site;
     if (thread_has_work(args.count, site))
@@ -140,6 +146,12 @@ KERNEL(gather_far, GatherFar, BLOCK, 2) {
     unsigned site;
     if (warp_has_work(args.fans.count, site))
         far_of_site(args, site);
+}
+
+KERNEL(come_closer, ComeCloser, BLOCK, 4) {
+    unsigned site;
+    if (thread_has_work(args.fans.count, site))
+        move_closer(args, site);
 }
 
 KERNEL(gather_fine, GatherFine, BLOCK, 2) {

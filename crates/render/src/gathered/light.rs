@@ -58,19 +58,19 @@ impl Bins {
     pub(super) const EMPTY: Bins = Bins { sums: [Vec3::ZERO; BINS], counts: [0.0; BINS] };
 
     #[inline(always)]
-    pub(super) fn take(&mut self, direction: Vec3, radiance: Vec3) {
+    pub(super) fn take(&mut self, direction: Vec3, radiance: Vec3, count: f32) {
         let bin = bin(direction);
-        self.sums[bin] += radiance;
-        self.counts[bin] += 1.0;
+        self.sums[bin] += count * radiance;
+        self.counts[bin] += count;
     }
 
-    /// Adds other rays.
-    pub(super) fn join(&mut self, other: &Bins) {
+    /// Adds other rays; those so far count this much.
+    pub(super) fn join(&mut self, share: f32, other: &Bins) {
         for (sum, other) in self.sums.iter_mut().zip(&other.sums) {
-            *sum += *other;
+            *sum = share * *sum + *other;
         }
         for (count, other) in self.counts.iter_mut().zip(&other.counts) {
-            *count += *other;
+            *count = share * *count + *other;
         }
     }
 

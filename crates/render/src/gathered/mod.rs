@@ -16,6 +16,7 @@ pub(crate) mod cuda;
 pub(crate) mod directions;
 mod far;
 mod fine;
+mod guide;
 mod light;
 mod lookup;
 mod rays;
@@ -142,6 +143,9 @@ pub struct SurfaceLight {
     bounce: Bounce,
 }
 
+/// Changes with what is computed from the same sources: what was saved before is gathered anew.
+const REVISION: &[u8] = b"guided";
+
 /// All that gathered light depends on, besides the geometry.
 pub(crate) struct Sources {
     lights: Vec<lightmesh_scene::Light>,
@@ -166,7 +170,8 @@ impl Sources {
             hash.update(&(bytes.len() as u64).to_le_bytes());
             hash.update(bytes);
         };
-        // 1. Surfaces.
+        // 1. How it is gathered, and surfaces.
+        add(REVISION);
         add(&scene.geometry.hash().to_le_bytes());
         let Geometry { mesh, materials, textures, .. } = &*scene.scene.geometry;
         add(bytemuck::cast_slice(mesh.triangles.as_flattened()));

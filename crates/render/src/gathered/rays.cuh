@@ -4,19 +4,34 @@
 #include "cuda/tally.cuh"
 #include "gathered/cells.cuh"
 #include "gathered/directions.cuh"
+#include "gathered/guide.cuh"
 #include "shading/environment.cuh"
 #include "shading/shading.cuh"
 #include "shadow/shadow.cuh"
 
 DEVICE unsigned rays_of_fan(const Fans &fans) { return fans.side * fans.side; }
 
-// The direction of ray number `index` from a site, and its weight by the cosine.
-DEVICE Vec3 fan_direction(const Fans &fans, const Site &site, unsigned index, float &weight) {
-    const unsigned long long random = random_bits(site.seed ^ fans.sampling.seed, index, fans.side);
+// Where ray number `index` of an even fan lies in the square [-1, 1]^2.
+DEVICE void even_place(const Fans &fans, unsigned long long seed, unsigned index, float &x, float &y) {
+    const unsigned long long random = random_bits(seed, index, fans.side);
     const float column = (float)(index % fans.side) + (float)((unsigned)random >> 8) * LAST_DIGIT;
     const float row = (float)(index / fans.side) + (float)((unsigned)(random >> 32) >> 8) * LAST_DIGIT;
     const float side = (float)fans.side;
-    const Vec3 local = direction_above(2.0f * column / side - 1.0f, 2.0f * row / side - 1.0f, weight);
+    x = 2.0f * column / side - 1.0f;
+    y = 2.0f * row / side - 1.0f;
+}
+
+// The direction of ray number `index` from site number `number`, its weight by the cosine, and how many rays of an even fan it stands for.
+DEVICE Vec3 fan_direction(const Fans &fans, unsigned number, const Site &site, unsigned index, float &weight, float &area) {
+    const unsigned long long seed = site.seed ^ fans.sampling.seed;
+    float x, y;
+    area = 1.0f;
+    if (fans.ends != nullptr)
+        guided_place(fans, number, seed, index, x, y, area);
+    else
+        even_place(fans, seed, index, x, y);
+    const Vec3 local = direction_above(x, y, weight);
+    weight = area * weight;
     Vec3 tangent, other;
     basis(site.normal, tangent, other);
     return local.x * tangent + local.y * other + local.z * site.normal;
@@ -31,9 +46,11 @@ DEVICE void cast_fan(const Fans &fans, unsigned number) {
     for (unsigned first = 0; first < rays; first += WARP) {
         float weight = 0.0f;
         if (first + lane < rays) {
-            const Vec3 direction = fan_direction(fans, site, first + lane, weight);
+            float area;
+            const Vec3 direction = fan_direction(fans, number, site, first + lane, weight, area);
             fans.list[start + first + lane] = ListedRay{site.origin, number, direction, 0, splat(1.0f), 0};
             fans.weights[start + first + lane] = weight;
+            fans.areas[start + first + lane] = area;
         }
         // In the order of the rays.
         for (unsigned ray = 0; ray < WARP && first + ray < rays; ++ray)
@@ -70,8 +87,8 @@ DEVICE int asked_level(const Fans &fans, unsigned site) {
     for (unsigned ray = site * rays_of_fan(fans); ray < (site + 1) * rays_of_fan(fans); ++ray) {
         const Hit hit = load_hit(fans.hits, ray);
         if (hit.triangle != Hit::NONE) {
-            sum += hit.t;
-            count += 1.0f;
+            sum += fans.areas[ray] * hit.t;
+            count += fans.areas[ray];
         }
     }
     float rest;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::cells::{Kind, Site, kind_of, level_of, outward};
 use super::directions::{above, basis};
+use super::guide::Guides;
 use super::lookup::Place;
 use super::scene::Scene;
 use crate::accel::{Hit, Ray};
@@ -51,16 +52,15 @@ impl Fan {
         Cone { width: 0.0, spread: (2.0 * PI).sqrt() / self.side as f32 }
     }
 
-    /// The direction of ray number `index` from a site, and its weight by the cosine.
-    fn direction(self, [tangent, other, normal]: [Vec3; 3], seed: u64, index: u32) -> (Vec3, f32) {
+    /// Where ray number `index` lies in the square [−1, 1]².
+    fn place(self, seed: u64, index: u32) -> Vec2 {
         let random = random_bits(seed, u64::from(index), self.side as usize);
         let place = |part: u32, bits: u32| {
             let within = (bits >> 8) as f32 * (1.0 / (1 << 24) as f32);
             2.0 * (part as f32 + within) / self.side as f32 - 1.0
         };
         let (column, row) = (index % self.side, index / self.side);
-        let (local, weight) = above(Vec2::new(place(column, random as u32), place(row, (random >> 32) as u32)));
-        (local.x * tangent + local.y * other + local.z * normal, weight)
+        Vec2::new(place(column, random as u32), place(row, (random >> 32) as u32))
     }
 }
 
@@ -78,6 +78,8 @@ pub(super) struct Cast {
     pub(super) list: RayList,
     /// Shares of the mean radiance by the cosine.
     pub(super) weights: Vec<f32>,
+    /// How many rays of an even fan each stands for.
+    pub(super) areas: Vec<f32>,
     pub(super) hits: Vec<Hit>,
     fan: Fan,
     /// The seed of each site.
@@ -88,14 +90,25 @@ pub(super) struct Cast {
 
 /// The level of the smallest cells that the rays of a site ask for reflected light: cells become larger from reflection to reflection, up to
 /// what suits a ray of mean length, so that neither corners are asked in detail everywhere nor whole rooms as one.
-fn asked_level(own: i32, reach: f32, hits: &[Hit]) -> i32 {
-    let hits = hits.iter().filter(|hit| hit.is_some());
-    let (sum, count) = hits.fold((0.0, 0.0), |(sum, count), hit| (sum + hit.t, count + 1.0));
+fn asked_level(own: i32, reach: f32, hits: &[Hit], areas: &[f32]) -> i32 {
+    let hits = hits.iter().zip(areas).filter(|(hit, _)| hit.is_some());
+    let (sum, count) = hits.fold((0.0, 0.0), |(sum, count), (hit, area)| (sum + area * hit.t, count + area));
     let is_near = reach < f32::INFINITY;
     if is_near || count == 0.0 { own } else { own.max((own + 1).min(level_of(BOUNCE_SIZE * (sum / count)).0)) }
 }
 
 impl Cast {
+    /// What the rays of each site hit, with their weights.
+    pub(super) fn fans(&mut self) -> impl IndexedParallelIterator<Item = (&mut [Hit], &[f32])> {
+        let len = self.fan.len();
+        self.hits.par_chunks_exact_mut(len).zip(self.weights.par_chunks_exact(len))
+    }
+
+    /// Changes the levels of the smallest cells that rays ask, by site.
+    pub(super) fn set_levels(&mut self, levels: impl Iterator<Item = i32>) {
+        self.levels = levels.collect();
+    }
+
     /// The level of the smallest cells that a ray asks for reflected light.
     fn level(&self, ray: usize) -> i32 {
         self.levels[ray / self.fan.len()]
@@ -113,33 +126,43 @@ impl Scene<'_> {
         self.rays_at_once / fan.len()
     }
 
-    /// Casts a fan of rays from each site, as far as it says.
-    pub(super) fn cast<'s>(&self, sites: impl Iterator<Item = (&'s Site, f32)>, fan: Fan) -> Cast {
+    /// Casts a fan of rays from each site, as far as it says: even, or as guides have it.
+    pub(super) fn cast<'s>(
+        &self,
+        sites: impl Iterator<Item = (&'s Site, f32)>,
+        fan: Fan,
+        guides: Option<&Guides>,
+    ) -> Cast {
         let sites: Vec<(&Site, f32)> = sites.collect();
         let count = sites.len() * fan.len();
         let nothing = Ray { origin: Vec3::ZERO, direction: Vec3::ZERO, t_max: 0.0 };
         let mut list = RayList { cone: fan.cone(), rays: vec![nothing; count], ..RayList::default() };
-        let mut weights = vec![0.0; count];
+        let (mut weights, mut areas) = (vec![0.0; count], vec![1.0; count]);
         let seed = self.job.sampling.seed;
         let fans = list.rays.par_chunks_exact_mut(fan.len()).zip(weights.par_chunks_exact_mut(fan.len()));
-        fans.zip(&sites).for_each(|((rays, weights), &(site, reach))| {
+        let fans = fans.zip(areas.par_chunks_exact_mut(fan.len())).zip(&sites);
+        fans.enumerate().for_each(|(number, (((rays, weights), areas), &(site, reach)))| {
             let normal = site.point.normal;
             let [tangent, other] = basis(normal);
+            let (guide, seed) = (guides.map(|guides| guides.of(number)), site.seed ^ seed);
             let mut sum = 0.0;
-            for (index, (ray, weight)) in (0..).zip(rays.iter_mut().zip(weights.iter_mut())) {
-                let (direction, share) = fan.direction([tangent, other, normal], site.seed ^ seed, index);
+            for (index, ray) in rays.iter_mut().enumerate() {
+                let even = || (fan.place(seed, index as u32), 1.0);
+                let (place, area) = guide.map_or_else(even, |guide| guide.place(fan, seed, index as u32));
+                let (local, weight) = above(place);
+                let direction = local.x * tangent + local.y * other + local.z * normal;
                 *ray = Ray { origin: site.point.origin, direction, t_max: reach };
-                *weight = share;
-                sum += share;
+                (weights[index], areas[index]) = (area * weight, area);
+                sum += area * weight;
             }
             weights.iter_mut().for_each(|weight| *weight /= sum);
         });
         let hits = closest_hits(self.scene, &list, |_, trace| self.job.piece(0, trace));
         Tally::add(&self.job.tally.gather_rays, count as u64);
         let seeds = sites.iter().map(|(site, _)| site.seed).collect();
-        let level = |(hits, &(site, reach)): (&[Hit], &(&Site, f32))| asked_level(site.level, reach, hits);
-        let levels = hits.par_chunks_exact(fan.len()).zip(&sites).map(level).collect();
-        Cast { list, weights, hits, fan, seeds, levels }
+        let fans = hits.par_chunks_exact(fan.len()).zip(areas.par_chunks_exact(fan.len())).zip(&sites);
+        let levels = fans.map(|((hits, areas), &(site, reach))| asked_level(site.level, reach, hits, areas)).collect();
+        Cast { list, weights, areas, hits, fan, seeds, levels }
     }
 
     /// What rays see, but for the light that reaches what they hit from no light directly. Rays that end before they hit anything see nothing.

@@ -142,7 +142,7 @@ impl<R: Runtime> DeviceBounce<R> {
             let count = at_once.min(new - first);
             let from = TakeSites { sites: self.sites.input(), numbers: self.unlinked.input(), ..TakeSites::zeroed() };
             let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;
-            let own = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, FAN)?;
+            let own = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, FAN, None)?;
             own.see(device)?;
             self.resolve(device, &own, false)?;
             let record = Bounce { first: first as u32, linked: (self.linked + first) as u32, ..self.record(&own) };

@@ -1,12 +1,14 @@
 //! Fans of rays on a device.
 
 use bytemuck::Zeroable;
-use lightmesh_layout::gathered::{Fans as Record, SeenRay, Site, TakeSites};
+use lightmesh_layout::gathered::{Fans as Record, GuideFans, SeenRay, Site, TakeSites};
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays};
+use lightmesh_layout::{In, Out};
 
 use super::device::Device;
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
+use crate::gathered::guide::blocks;
 use crate::gathered::rays::Fan;
 use crate::gpu::{PerStructure, per_structure, sampling};
 use crate::job::Sampling;
@@ -22,9 +24,10 @@ pub(super) struct DeviceFans<R: Runtime> {
     /// Number of rays.
     pub(super) rays: usize,
     /// What the record points to.
-    _sites: Buffer<R, Site>,
+    site_list: Buffer<R, Site>,
     _list: Buffer<R, ListedRay>,
     _weights: Buffer<R, f32>,
+    _areas: Buffer<R, f32>,
     _hits: Buffer<R, Hit>,
     _seen: Buffer<R, SeenRay>,
     _levels: Buffer<R, i32>,
@@ -36,6 +39,27 @@ pub(super) struct Sites<R: Runtime> {
     pub(super) sites: Buffer<R, Site>,
     /// In cells of the site.
     pub(super) reach: f32,
+}
+
+/// How many rays go into each block of directions, for some sites.
+pub(super) struct Guides<R: Runtime> {
+    /// Along each side of the square.
+    blocks: u32,
+    ends: Buffer<R, u32>,
+}
+
+/// Where second rays go: those of `rays` whose first ones, of a fan, see different things, `count` sites from the first one on.
+pub(super) fn guides<R: Runtime>(
+    device: &Device<R>,
+    from: GuideFans,
+    [first, second]: [Fan; 2],
+    count: usize,
+) -> Result<Guides<R>, RenderError> {
+    let blocks = blocks(first);
+    let ends = device.cuda.pool().room("rays of blocks of directions", count * (blocks * blocks) as usize)?;
+    let record = GuideFans { ends: ends.output(), count: count as u32, rays: second.len() as u32, ..from };
+    device.warps("guide_fans", count, &record)?;
+    Ok(Guides { blocks, ends })
 }
 
 /// Copies of `count` sites.
@@ -50,14 +74,20 @@ pub(super) fn taken<R: Runtime>(
 }
 
 impl<R: Runtime> DeviceFans<R> {
-    /// Casts a fan of rays from each site.
-    pub(super) fn cast(device: &Device<R>, from: Sites<R>, fan: Fan) -> Result<DeviceFans<R>, RenderError> {
+    /// Casts a fan of rays from each site: even, or as guides have it.
+    pub(super) fn cast(
+        device: &Device<R>,
+        from: Sites<R>,
+        fan: Fan,
+        guides: Option<&Guides<R>>,
+    ) -> Result<DeviceFans<R>, RenderError> {
         let Device { cuda, wave, .. } = device;
         let Sites { sites, reach } = from;
         let (pool, count) = (cuda.pool(), sites.len());
         let rays = count * fan.len();
         let list = pool.room::<ListedRay>("gather rays", rays)?;
         let weights = pool.room("weights of gather rays", rays)?;
+        let areas = pool.room("areas of gather rays", rays)?;
         let hits = pool.room("hits of gather rays", rays)?;
         let seen = pool.room("what gather rays see", rays)?;
         let levels = pool.room("levels that gather rays ask", count)?;
@@ -78,15 +108,18 @@ impl<R: Runtime> DeviceFans<R> {
             sites: sites.input(),
             list: list.output(),
             weights: weights.output(),
+            areas: areas.output(),
             hits: hits.output(),
             seen: seen.output(),
             levels: levels.output(),
             brightness: brightness.output(),
+            ends: guides.map_or(In::NULL, |guides| guides.ends.input()),
             count: count as u32,
             side: fan.side(),
             reach,
             is_near: u32::from(reach.is_finite()),
             lamps: u32::from(wave.scene.host.has_lamps()),
+            blocks: guides.map_or(0, |guides| guides.blocks),
             ..Record::zeroed()
         };
         device.warps("cast_fans", count, &record)?;
@@ -95,14 +128,20 @@ impl<R: Runtime> DeviceFans<R> {
             record,
             sites: count,
             rays,
-            _sites: sites,
+            site_list: sites,
             _list: list,
             _weights: weights,
+            _areas: areas,
             _hits: hits,
             _seen: seen,
             _levels: levels,
             _brightness: brightness,
         })
+    }
+
+    /// The sites, to be changed.
+    pub(super) fn sites_output(&self) -> Out<Site> {
+        self.site_list.output()
     }
 
     /// Finds what the rays see, but for the light that reaches what they hit from no light directly.

@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
-use lightmesh_layout::gathered::{FarLight, GatherFar, Site, TakeSites};
+use lightmesh_layout::gathered::{FarLight, GatherFar, GuideFans, Site, TakeSites};
 use lightmesh_layout::{In, Out};
 
 use super::bounce::DeviceBounce;
 use super::cells::DeviceCells;
 use super::device::{Device, read_count};
-use super::fans::{DeviceFans, Sites, taken};
+use super::fans::{DeviceFans, Guides, Sites, guides, taken};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gathered::rays::Fan;
@@ -93,7 +93,7 @@ fn gather<R: Runtime>(
         ..GatherFar::zeroed()
     };
     // 1. A few rays from each.
-    let first_fans = seen(device, bounce, sites, fans[0])?;
+    let first_fans = seen(device, bounce, sites, fans[0], None)?;
     device.warps("gather_far", count, &GatherFar { fans: first_fans.record, ..record })?;
     // 2. More where these see different things.
     let count = read_count(&uneven_count)?;
@@ -109,7 +109,14 @@ fn gather<R: Runtime>(
             ..TakeSites::zeroed()
         };
         let sites = taken(device, from, count)?;
-        let more = seen(device, bounce, sites, fans[1])?;
+        let from = GuideFans {
+            fans: first_fans.record,
+            uneven: uneven.input(),
+            first: first as u32,
+            ..GuideFans::zeroed()
+        };
+        let guides = guides(device, from, fans, count)?;
+        let more = seen(device, bounce, sites, fans[1], Some(&guides))?;
         let before = fans[0].len() as u32;
         let joining = GatherFar { fans: more.record, owners: chosen.input(), before, ..record };
         device.warps("gather_far", count, &joining)?;
@@ -123,9 +130,10 @@ fn seen<R: Runtime>(
     bounce: &mut DeviceBounce<R>,
     sites: Buffer<R, Site>,
     fan: Fan,
+    guides: Option<&Guides<R>>,
 ) -> Result<DeviceFans<R>, RenderError> {
     device.wave.job.check()?;
-    let fans = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, fan)?;
+    let fans = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, fan, guides)?;
     fans.see(device)?;
     bounce.complete(device, &fans)?;
     Ok(fans)

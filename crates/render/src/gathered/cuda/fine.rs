@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bytemuck::Zeroable;
 use lightmesh_layout::constants::{COARSER, NEAR_CELLS, NEAR_REACH};
-use lightmesh_layout::gathered::{GatherFine, LightPlace, Site, SurfaceLight, TakeSites};
+use lightmesh_layout::gathered::{ComeCloser, GatherFine, LightPlace, Site, SurfaceLight, TakeSites};
 use lightmesh_layout::{In, Out};
 
 use super::bounce::DeviceBounce;
@@ -107,7 +107,9 @@ fn receive<R: Runtime>(
     let (pool, count) = (device.cuda.pool(), places.len());
     // 1. What is near.
     let from = Sites { sites, reach: NEAR_REACH * NEAR_CELLS };
-    let fans = DeviceFans::cast(device, from, coarse.fans.near)?;
+    let fans = DeviceFans::cast(device, from, coarse.fans.near, None)?;
+    let closer = ComeCloser { fans: fans.record, sites: fans.sites_output(), places: places.output() };
+    device.threads("come_closer", count, &closer)?;
 
     // 2. The coarse sites around that are seen, and what they gather.
     let links = coarse.cells.links(device, &places)?;

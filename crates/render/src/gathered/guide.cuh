@@ -1,0 +1,75 @@
+// Where the second rays of a coarse site go: twin of guide.rs.
+#pragma once
+
+#include "cuda/warp.cuh"
+#include "sampling.cuh"
+#include "shading/shading.cuh"
+
+// The standard deviation of what the first rays of a site saw in a block and next to it: luminance times weight.
+DEVICE float deviation(const Fans &fans, unsigned site, unsigned column, unsigned row) {
+    const unsigned side = fans.side, start = site * side * side;
+    const unsigned left = 2 * column - (2 * column < GUIDE_RING ? 2 * column : GUIDE_RING), right = min(2 * column + 2 + GUIDE_RING, side);
+    const unsigned top = 2 * row - (2 * row < GUIDE_RING ? 2 * row : GUIDE_RING), bottom = min(2 * row + 2 + GUIDE_RING, side);
+    float sum = 0.0f, square = 0.0f, count = 0.0f;
+    for (unsigned y = top; y < bottom; ++y)
+        for (unsigned x = left; x < right; ++x) {
+            const unsigned ray = start + y * side + x;
+            const float value = fans.weights[ray] * luminance(fans.seen[ray].radiance);
+            sum += value;
+            square += value * value;
+            count += 1.0f;
+        }
+    const float mean = sum / count;
+    return sqrtf(larger(square / count - mean * mean, 0.0f));
+}
+
+// The rays of a fan for each block of a site, whose first rays have seen something. One warp.
+DEVICE void guide_site(const GuideFans &args, unsigned number) {
+    const unsigned site = args.uneven[args.first + number], lane = lane_of_thread();
+    const unsigned blocks = args.fans.side / 2, count = blocks * blocks;
+    // In the order of the blocks.
+    float total = 0.0f;
+    for (unsigned first = 0; first < count; first += WARP) {
+        const unsigned block = first + lane;
+        const float own = block < count ? deviation(args.fans, site, block % blocks, block / blocks) : 0.0f;
+        for (unsigned next = 0; next < WARP && first + next < count; ++next)
+            total += __shfl_sync(ALL_LANES, own, next);
+    }
+    const float guided = total > 0.0f ? GUIDED / total : 0.0f, even = total > 0.0f ? 1.0f - GUIDED : 1.0f;
+    float share = 0.0f;
+    for (unsigned first = 0; first < count; first += WARP) {
+        const unsigned block = first + lane;
+        const float own = block < count ? deviation(args.fans, site, block % blocks, block / blocks) : 0.0f;
+        unsigned end = 0;
+        for (unsigned next = 0; next < WARP && first + next < count; ++next) {
+            share += even / (float)count + guided * __shfl_sync(ALL_LANES, own, next);
+            if (next == lane)
+                end = block + 1 < count ? (unsigned)(share * (float)args.rays) : args.rays;
+        }
+        if (block < count)
+            args.ends[number * count + block] = end;
+    }
+}
+
+// Where ray number `index` of a site's fan lies in the square [-1, 1]^2, and the area that it stands for, relative to that of a ray of an even fan.
+DEVICE void guided_place(const Fans &fans, unsigned site, unsigned long long seed, unsigned index, float &x, float &y, float &area) {
+    const unsigned blocks = fans.blocks, rays = fans.side * fans.side;
+    const unsigned *ends = fans.ends + site * blocks * blocks;
+    unsigned block = 0, beyond = blocks * blocks;
+    while (block < beyond) {
+        const unsigned middle = (block + beyond) / 2;
+        if (ends[middle] <= index)
+            block = middle + 1;
+        else
+            beyond = middle;
+    }
+    const unsigned first = block > 0 ? ends[block - 1] : 0, count = ends[block] - first, number = index - first;
+    const unsigned within = (unsigned)random_bits(seed, index, fans.side);
+    const unsigned scramble = (unsigned)random_bits(seed, rays + block, fans.side);
+    const float across = ((float)number + (float)(within >> 8) * LAST_DIGIT) / (float)count;
+    const float along = (float)((__brev(number) ^ scramble) >> 8) * LAST_DIGIT;
+    const float side = (float)blocks;
+    x = 2.0f * ((float)(block % blocks) + across) / side - 1.0f;
+    y = 2.0f * ((float)(block / blocks) + along) / side - 1.0f;
+    area = (float)rays / ((float)count * side * side);
+}
