@@ -551,6 +551,8 @@ constants! {
     CROWDED: f32 = 0.5;
     /// To ask cells that are smaller once more, that must be more than this many times as much.
     CROWDED_AGAIN: f32 = 4.0;
+    /// Where it is more than this, as among leaves, smaller cells would not help either.
+    HOPELESS: f32 = 3.0;
     /// By how many levels coarse cells may become smaller.
     CLOSER: u32 = 2;
     /// The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.

@@ -19,7 +19,8 @@ DEVICE void move_closer(const ComeCloser &args, unsigned number) {
             if (hit.t < reach)
                 near += fans.weights[ray] / hit.t;
         }
-        if (near * size_of_level(level) <= most)
+        const float crowded = near * size_of_level(level);
+        if (crowded <= most || crowded > HOPELESS)
             break;
         --level;
         most *= CROWDED_AGAIN;

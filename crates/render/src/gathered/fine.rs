@@ -8,7 +8,7 @@
 //! nothing is near, there is no noise but theirs.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{CLOSER, COARSER, CROWDED, CROWDED_AGAIN, NEAR_REACH};
+use lightmesh_layout::constants::{CLOSER, COARSER, CROWDED, CROWDED_AGAIN, HOPELESS, NEAR_REACH};
 use rayon::prelude::*;
 
 use super::bounce::Bounce;
@@ -69,7 +69,8 @@ fn come_closer(cast: &mut Cast, sites: &mut [Site]) {
         for _ in 0..CLOSER {
             let near = hits.iter().zip(weights).filter(|(hit, _)| hit.t < reach(site));
             let near = near.fold(0.0, |sum, (hit, weight)| sum + weight / hit.t);
-            if near * size_of_level(site.level) <= most {
+            let crowded = near * size_of_level(site.level);
+            if crowded <= most || crowded > HOPELESS {
                 break;
             }
             site.level -= 1;
