@@ -3,7 +3,7 @@
 
     python3 bench/sheet/times.py ../shared/scenes target/release/lightmesh
 
-Runs of a model alternate, after one that is not counted. Prints the median of each model and the medians over models, as Markdown; wall seconds, and
+Runs of a model alternate, after some that are not counted. Prints the median of each model and the medians over models, as Markdown; wall seconds, and
 processor seconds, which other programs disturb less.
 """
 
@@ -27,6 +27,7 @@ def main():
     parser.add_argument("--only", action="append", help="models whose name contains this; repeatable")
     parser.add_argument("--size", type=int, default=1024, help="pixels of an edge (1024)")
     parser.add_argument("--rounds", type=int, default=3, help="runs of each command that count (3)")
+    parser.add_argument("--warm-up", type=int, default=1, help="runs of each command before them (1)")
     parser.add_argument("--device", default="cpu", help="as for lightmesh (cpu)")
     plan = parser.parse_args()
     names = sorted(str(path.relative_to(plan.models)) for path in plan.models.rglob("*") if path.suffix.lower() in KINDS)
@@ -54,11 +55,11 @@ def measured(plan, name, picture):
     base += ["--device", plan.device, "--size", f"{plan.size}x{plan.size}"]
     seconds = {way: [] for way in WAYS}
     pictures = {}
-    for turn in range(plan.rounds + 1):
+    for turn in range(plan.warm_up + plan.rounds):
         for way, flags in WAYS.items():
             spent = run([*base, *flags])
             pictures[way] = picture.read_bytes()
-            if turn > 0:
+            if turn >= plan.warm_up:
                 seconds[way].append(spent)
     processor, wall = ({way: statistics.median(run[kind] for run in runs) for way, runs in seconds.items()} for kind in (0, 1))
     if pictures["studio"] == pictures["plain"]:

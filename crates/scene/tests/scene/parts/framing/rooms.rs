@@ -68,7 +68,7 @@ fn a_room_without_one_wall_has_a_lamp_below_its_ceiling() {
         let added = scene.complete_with(lighting, Up::Y, 1.0);
         (scene, added)
     };
-    let (scene, added) = lit(cube(true, &[5]), Lighting::Studio);
+    let (scene, added) = lit(cube(true, &[4]), Lighting::Studio);
     assert!(added.lamp && added.lights && !added.studio && scene.lights.room);
     let [lamp] = &scene.lights.list[..] else { panic!("{:?}", scene.lights.list) };
     let LightKind::Disk { position, radius, .. } = lamp.kind else { panic!("{lamp:?}") };
@@ -79,8 +79,8 @@ fn a_room_without_one_wall_has_a_lamp_below_its_ceiling() {
     // A white floor below it is white: I / (π d²).
     assert!((lamp.intensity.x / (std::f32::consts::PI * (position.y + 1.0).powi(2)) - 1.0).abs() < 1e-3);
     for (mesh, lighting) in [
-        (cube(true, &[5]), Lighting::KeyAndFill),
-        (cube(true, &[5]), Lighting::StudioAnywhere),
+        (cube(true, &[4]), Lighting::KeyAndFill),
+        (cube(true, &[4]), Lighting::StudioAnywhere),
         (cube(true, &[]), Lighting::Studio),
         (cube(false, &[]), Lighting::Studio),
     ] {
