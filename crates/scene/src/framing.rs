@@ -288,6 +288,9 @@ fn sides(up: Up) -> (Vec3, Vec3) {
     }
 }
 
+/// Calls a function with each point that is framed, in coordinates to the right, up and forward.
+type EachPoint<'a> = dyn Fn(&mut dyn FnMut(Vec3)) + 'a;
+
 /// Where a camera of this direction has to be so that all vertices of what it frames fit in this share of an image of this width, relative to its height, in its middle.
 ///
 /// In coordinates to the right, up and forward, with T the tangent of half the field of view along an axis of the image, a point is left of the right border of a
@@ -326,7 +329,7 @@ fn fitting(mesh: &Mesh, subject: &Subject, camera: &Camera, aspect: f32, fill: f
 ///
 /// Of a camera at s, the points at u and v, at the depths p and q, are outermost if (u − s) / p is the largest and (v − s) / q the smallest.
 /// They are equally far from the middle where s = (u q + v p) / (p + q). There, others may be outermost: so it is repeated until it stays.
-fn middle(each: &dyn Fn(&mut dyn FnMut(Vec3)), back: f32, mut place: [f32; 2]) -> [f32; 2] {
+fn middle(each: &EachPoint, back: f32, mut place: [f32; 2]) -> [f32; 2] {
     /// Usual models take two or three.
     const ROUNDS: usize = 8;
     for _ in 0..ROUNDS {
