@@ -45,8 +45,10 @@ class Model:
     """Codes of the 8-bit picture."""
     covered: np.ndarray
     """Share of each pixel that is covered."""
+    first: np.ndarray
+    """Codes of the first picture: in the studio, if the file brings no light."""
     sky: np.ndarray
-    """Codes of the picture under a clear sky, with ground and horizon where the program adds the camera."""
+    """Codes of the picture under a clear sky, with ground and horizon."""
     notes: str
 
 
@@ -57,23 +59,24 @@ def find(folder, only):
 
 
 def render(program, folder, name, size, output):
-    """Renders a model as the program does without being told anything but the size; keeps PNG, statistics and notes in `output`."""
+    """Renders a model as the program does without being told anything but the size, and as Cycles can show it; keeps PNG, statistics and notes in `output`."""
     file, stem = folder / name, output / name.replace("/", "-")
     picture, mask, stats = (stem.with_name(stem.name + end) for end in (".lightmesh.png", ".mask.png", ".stats.json"))
     view = ["--camera", CAMERAS[name]] if name in CAMERAS else []
     command = [program, "render", file, "--no-studio", "--size", f"{size}x{size}", *view, "--device", "cpu"]
     done = subprocess.run([*command, "-o", picture, "--stats", stats], check=True, stderr=subprocess.PIPE, text=True)
-    sky = stem.with_name(stem.name + ".sky.png")
-    outdoors = [argument for argument in command if argument != "--no-studio"]
-    subprocess.run([*outdoors, "-o", sky, "--sky", "clear", "-q"], check=True)
+    first, sky = (stem.with_name(stem.name + end) for end in (".first.png", ".sky.png"))
+    usual = [argument for argument in command if argument != "--no-studio"]
+    subprocess.run([*usual, "-o", first, "-q"], check=True)
+    subprocess.run([*usual, "-o", sky, "--sky", "clear", "-q"], check=True)
     subprocess.run([*command, "-o", mask, "--background", "transparent", "--quality", "draft", "-q"], check=True)
     settings = json.loads(stats.read_text())["settings"]
     info = json.loads(subprocess.run([program, "info", file, "--json"], check=True, stdout=subprocess.PIPE).stdout)
     camera = view_of(settings["camera"], file)
     suns = [] if info["lights"] else suns_of(camera, info["bounds"])
-    codes, under_sky = (np.asarray(Image.open(file).convert("RGB")) for file in (picture, sky))
+    codes, alone, under_sky = (np.asarray(Image.open(file).convert("RGB")) for file in (picture, first, sky))
     alpha = np.asarray(Image.open(mask).convert("RGBA"))[..., 3] / 255
-    return Model(name, file, camera, settings["ambient"], settings["background"], suns, codes, alpha, under_sky, done.stderr.strip())
+    return Model(name, file, camera, settings["ambient"], settings["background"], suns, codes, alpha, alone, under_sky, done.stderr.strip())
 
 
 def view_of(camera, file):

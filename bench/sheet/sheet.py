@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Contact sheets: every model of a folder at Lightmesh's defaults and under its clear sky, beside Blender's Cycles.
+"""Contact sheets: every model of a folder at Lightmesh's defaults, without its studio and under its clear sky, beside Blender's Cycles.
 
     target/sheet/bin/python bench/sheet/sheet.py ../shared/scenes target/release/lightmesh -o sheets
 
@@ -43,13 +43,15 @@ def main():
         model = models.render(plan.program.resolve(), plan.models, name, plan.size, plan.output)
         other = None if plan.without_cycles else cycles(model, plan)
         row = {"file": name, "lightmesh": models.shares(model.picture, model.covered)}
+        row["first"] = models.shares(model.first, np.ones_like(model.covered))
         row["sky"] = models.shares(model.sky, np.ones_like(model.covered))
         if other is not None:
             row["cycles"] = models.shares(other, model.covered)
         row["verdict"] = verdicts.get(name, {}).get("verdict", "")
         verdicts[name] = {**verdicts.get(name, {}), **row}
-        pairs.append(pair(name, {"Lightmesh": model.picture, "under a clear sky": model.sky, "Cycles": other}, plan.output))
-        print(name, json.dumps({key: row[key] for key in ("lightmesh", "sky")}), flush=True)
+        shown_as = {"first picture": model.first, "--sky clear": model.sky, "--no-studio": model.picture, "Cycles": other}
+        pairs.append(pair(name, shown_as, plan.output))
+        print(name, json.dumps({key: row[key] for key in ("first", "lightmesh", "sky")}), flush=True)
         save(verdicts, plan)
     for first in range(0, len(pairs), PAIRS_PER_SHEET):
         sheet(pairs[first : first + PAIRS_PER_SHEET], plan.output / f"sheet-{first // PAIRS_PER_SHEET:02}.png")

@@ -122,7 +122,7 @@ impl ImageRequest {
         Ok(ImageRequest { settings, choices, exposure: exposure.exposure })
     }
 
-    /// The same for a picture to look at, as `lightmesh render` makes it: under a sky, a model without camera stands on a ground before the horizon.
+    /// The same for a picture to look at, as `lightmesh render` makes it: under a sky, a model stands on a ground before the horizon.
     pub fn of_picture(self) -> ImageRequest {
         ImageRequest { choices: self.choices.of_picture(true), ..self }
     }
@@ -142,8 +142,8 @@ impl ImageRequest {
     /// # Errors
     /// [`ChoiceError`] for an unknown camera or invalid surroundings.
     pub fn stage(&self, scene: &mut Scene, observer: &dyn Observer) -> Result<Staged, ChoiceError> {
-        let Applied { behind, ground, outdoors } = self.choices.apply(scene, observer)?;
-        let exposure = exposure(scene, self.exposure);
+        let Applied { behind, ground, outdoors, indoors } = self.choices.apply(scene, observer)?;
+        let exposure = exposure(scene, self.exposure, indoors);
         let metering = Metering::new(scene, exposure, self.settings.transparent, behind);
         Ok(Staged { metering: metering.of_highlights(outdoors, self.exposure), ground })
     }

@@ -76,8 +76,12 @@ pub struct Added {
     pub lights_inside: bool,
     /// They are those of a [studio](Lighting::Studio), which has a ground, too.
     pub studio: bool,
+    /// A lamp below the ceiling of an interior that is seen through its open side, in place of the studio.
+    pub lamp: bool,
     /// A ground and haze, by [`Scene::complete_outdoors`].
     pub outdoors: bool,
+    /// It is an interior under a sky: what reaches it of that may be any share.
+    pub indoors: bool,
 }
 
 /// What lights a scene that brings no light.
@@ -87,8 +91,8 @@ pub enum Lighting {
     #[default]
     KeyAndFill,
     /// A studio: one large key light at the upper left of the camera, a panorama of soft boxes, a ground that catches shadows and shows a light
-    /// grey background. A key light and a fill light where the key light would not reach what the camera sees or the camera is in
-    /// an interior, and where [ambient light](crate::Lights::ambient) or a background is set.
+    /// grey background. A lamp below the ceiling in an interior that is seen through its open side. A key light and a fill light where the key light
+    /// would not reach what the camera sees or the camera is inside, and where [ambient light](crate::Lights::ambient) or a background is set.
     Studio,
     /// A studio also in interiors.
     StudioAnywhere,
@@ -148,6 +152,12 @@ impl Scene {
         }
         let is_open = || self.lights.beside_studio(&self.geometry).is_none();
         let may_be_studio = added.lights && lighting != Lighting::KeyAndFill && is_open();
+        if may_be_studio && lighting == Lighting::Studio && added.viewpoint == Viewpoint::OpenSide {
+            self.lights.list = vec![lights::lamp(&sight, &subject.bounds, &self.cameras[0])];
+            self.lights.room = true;
+            added.lamp = true;
+            return added;
+        }
         if added.lights {
             let (lights, inside) = key_and_fill(&sight, &subject, &self.cameras[0]);
             let is_interior = inside || added.viewpoint != Viewpoint::Front;
@@ -278,32 +288,72 @@ fn sides(up: Up) -> (Vec3, Vec3) {
     }
 }
 
+/// Calls a function with each point that is framed, in coordinates to the right, up and forward.
+type EachPoint<'a> = dyn Fn(&mut dyn FnMut(Vec3)) + 'a;
+
 /// Where a camera of this direction has to be so that all vertices of what it frames fit in this share of an image of this width, relative to its height, in its middle.
 ///
 /// In coordinates to the right, up and forward, with T the tangent of half the field of view along an axis of the image, a point is left of the right border of a
 /// camera at c if `x - c.x <= T (z - c.z)`, so the largest `x - T z` of all points bounds `c.x - T c.z`; and so for each border. The
-/// two borders of an axis fix the camera's place across it, and the axis with the larger distance decides that.
+/// axis with the larger distance between its borders decides how far the camera is, and [`middle`] its place across.
 fn fitting(mesh: &Mesh, subject: &Subject, camera: &Camera, aspect: f32, fill: f32) -> Vec3 {
     let (right, up, forward) = camera.basis();
     let high = fill * (0.5 * VFOV).to_radians().tan();
     let wide = aspect * high;
     let center = subject.bounds.center();
+    let each = |take: &mut dyn FnMut(Vec3)| {
+        let seen = |point: Vec3| {
+            let point = point - center;
+            take(Vec3::new(point.dot(right), point.dot(up), point.dot(forward)));
+        };
+        if subject.has_vertices(mesh) {
+            subject.each_vertex(mesh, seen);
+        } else {
+            (0..8).map(|i| corner(&subject.bounds, i)).for_each(seen);
+        }
+    };
     let mut borders = [f32::NEG_INFINITY; 4];
-    let include = |point: Vec3| {
-        let point = point - center;
-        let (x, y, z) = (point.dot(right), point.dot(up), point.dot(forward));
+    each(&mut |Vec3 { x, y, z }| {
         for (border, (aside, tangent)) in borders.iter_mut().zip([(x, wide), (-x, wide), (y, high), (-y, high)]) {
             *border = border.max(aside - tangent * z);
         }
-    };
-    if subject.has_vertices(mesh) {
-        subject.each_vertex(mesh, include);
-    } else {
-        (0..8).map(|i| corner(&subject.bounds, i)).for_each(include);
-    }
+    });
     let [east, west, north, south] = borders;
     let back = ((east + west) / (2.0 * wide)).max((north + south) / (2.0 * high)).max(0.0);
-    center + 0.5 * (east - west) * right + 0.5 * (north - south) * up - back * forward
+    let [x, y] = middle(&each, back, [0.5 * (east - west), 0.5 * (north - south)]);
+    center + x * right + y * up - back * forward
+}
+
+/// Where across a camera has to be, this far back, so that points reach as far to the right as to the left in its image, and as far up as down: the
+/// borders that [`fitting`] found meet only along the axis that decides, and along the other one the points would be beside the middle.
+///
+/// Of a camera at s, the points at u and v, at the depths p and q, are outermost if (u − s) / p is the largest and (v − s) / q the smallest.
+/// They are equally far from the middle where s = (u q + v p) / (p + q). There, others may be outermost: so it is repeated until it stays.
+fn middle(each: &EachPoint, back: f32, mut place: [f32; 2]) -> [f32; 2] {
+    /// Usual models take two or three.
+    const ROUNDS: usize = 8;
+    for _ in 0..ROUNDS {
+        let mut outermost = [[(f32::NEG_INFINITY, 0.0, 1.0), (f32::INFINITY, 0.0, 1.0)]; 2];
+        each(&mut |point| {
+            let depth = point.z + back;
+            for ((axis, place), [most, least]) in [point.x, point.y].into_iter().zip(place).zip(&mut outermost) {
+                let slope = (axis - place) / depth;
+                if depth > 0.0 && slope > most.0 {
+                    *most = (slope, axis, depth);
+                }
+                if depth > 0.0 && slope < least.0 {
+                    *least = (slope, axis, depth);
+                }
+            }
+        });
+        let between = outermost.map(|[(_, u, p), (_, v, q)]| (u * q + v * p) / (p + q));
+        let usual = between.iter().all(|place| place.is_finite());
+        if !usual || between == place {
+            break;
+        }
+        place = between;
+    }
+    place
 }
 
 /// One of the eight corners of a box.

@@ -28,6 +28,8 @@ pub struct Lights {
     /// Whether they are those of a [studio](crate::Lighting::Studio), whose environment is meant to light surfaces by direction, without
     /// shadows, and to be mirrored.
     pub studio: bool,
+    /// Whether it is that of a [room](crate::Added::lamp), whose surfaces light each other.
+    pub room: bool,
     /// Whether the environment is that of a view [outdoors](crate::Scene::complete_outdoors), which is meant to be mirrored, too.
     pub outdoors: bool,
 }
@@ -58,7 +60,7 @@ impl Lights {
 
     /// The light of a sky or a panorama in addition to all others.
     pub fn add(&mut self, Surroundings { environment, sun, discs }: Surroundings) {
-        self.studio = false;
+        (self.studio, self.room) = (false, false);
         self.list.splice(0..0, sun.into_iter().chain(discs));
         self.environment = Some(environment.into());
     }

@@ -7,15 +7,17 @@
 
 use std::f32::consts::PI;
 
+use glam::Vec3;
+
 use crate::{Added, Environment, Scene, Up, Viewpoint};
 
 /// How far below the horizon haze hides a third of the ground, degrees.
 const HAZE: f32 = 4.0;
 
 impl Scene {
-    /// Completes a scene that has surroundings but no camera, such as one under a [sky](crate::Sky): adds a camera that frames it with the horizon
-    /// in the upper part of the image, haze, and a [ground](Scene::add_ground). An interior keeps its [usual camera](Scene::default_camera), and gets nothing
-    /// else if that is inside.
+    /// Completes a scene that has surroundings, such as one under a [sky](crate::Sky): adds haze, a [ground](Scene::add_ground) and, if there is
+    /// no camera, one that frames it with the horizon in the upper part of the image. An interior that would be looked at from inside gets
+    /// its [usual camera](Scene::default_camera) and nothing else, and no ground is put above the scene's first camera.
     ///
     /// ```
     /// use lightmesh_scene::{Scene, Sky, Up};
@@ -26,18 +28,27 @@ impl Scene {
     /// # Ok::<(), lightmesh_scene::SkyError>(())
     /// ```
     pub fn complete_outdoors(&mut self, up: Up, aspect: f32) -> Added {
-        let Some(around) = self.lights.environment.clone().filter(|_| self.cameras.is_empty()) else {
+        let Some(around) = self.lights.environment.clone() else {
             return self.complete_for(up, aspect);
         };
         let (camera, viewpoint) = self.camera_outdoors(up, aspect);
-        self.cameras.push(camera);
-        let outdoors = viewpoint != Viewpoint::Inside;
+        let added = self.cameras.is_empty();
+        let eye = self.cameras.first().map_or(camera.position, |camera| camera.position);
+        if added {
+            self.cameras.push(camera);
+        }
+        let height = |place: Vec3| place.dot(up.axis());
+        let bounds = self.geometry.mesh.bounds();
+        let is_above = bounds.is_empty() || height(eye) > height(bounds.min);
+        let is_interior = viewpoint == Viewpoint::Inside;
+        let outdoors = !is_interior && is_above;
         if outdoors {
             self.lights.environment = Some(hazy(&around).into());
             self.lights.outdoors = true;
             self.add_ground(up);
         }
-        Added { camera: true, viewpoint, outdoors, ..Added::default() }
+        let viewpoint = if added { viewpoint } else { Viewpoint::default() };
+        Added { camera: added, viewpoint, outdoors, indoors: is_interior, ..Added::default() }
     }
 }
 

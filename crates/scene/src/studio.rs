@@ -9,7 +9,7 @@ use glam::Vec3;
 use crate::{Bounds, Camera, Environment, Light, LightKind, Scene, Up};
 
 /// Radiance of the background.
-const BACKGROUND: f32 = 0.8;
+const BACKGROUND: f32 = 0.65;
 /// What a white surface that faces the key light gets of it, and one that faces up gets of the surroundings: together less than 1 with the usual
 /// reflectance.
 const KEY: f32 = 0.62;
@@ -27,7 +27,7 @@ const SIZE: [u32; 2] = [512, 256];
 const ZENITH: f32 = 0.9;
 const AHEAD: f32 = 0.75;
 const BEHIND: f32 = 0.12;
-const FLOOR: f32 = 0.8;
+const FLOOR: f32 = 0.5;
 
 /// A soft box.
 struct SoftBox {
@@ -38,9 +38,10 @@ struct SoftBox {
     radiance: f32,
 }
 
-/// The large one around the key light, a strip at the right, one above and behind the model, and a small window behind the camera.
-const BOXES: [SoftBox; 4] = [
+/// The large one around the key light, its bright middle, a strip at the right, one above and behind the model, and a small window behind the camera.
+const BOXES: [SoftBox; 5] = [
     SoftBox { place: [-0.9, 0.75, 0.45], half: [0.55, 0.45], radiance: 3.2 },
+    SoftBox { place: [-KEY_PLACE[0], KEY_PLACE[1], KEY_PLACE[2]], half: [0.12, 0.12], radiance: 6.0 },
     SoftBox { place: [1.0, 0.45, 0.15], half: [0.14, 0.6], radiance: 2.6 },
     SoftBox { place: [0.1, 1.0, -0.9], half: [0.8, 0.16], radiance: 2.4 },
     SoftBox { place: [0.35, 0.45, 1.0], half: [0.12, 0.16], radiance: 2.2 },

@@ -42,6 +42,8 @@ pub(crate) struct Applied {
     pub(crate) ground: Option<Up>,
     /// Whether it shows a model under a sky, with horizon and haze.
     pub(crate) outdoors: bool,
+    /// Whether it shows an interior under a sky.
+    pub(crate) indoors: bool,
 }
 
 /// Camera, lights, surroundings, ambient term and background as typed.
@@ -59,7 +61,7 @@ pub(crate) struct SceneChoices {
     sky: Option<SkySpec>,
     environment: Option<EnvironmentSpec>,
     ground: bool,
-    /// Whether the sky may bring a ground and haze to a model without camera, and whether it does.
+    /// Whether the sky may bring a ground and haze to a model, and whether it does.
     may_be_outdoors: bool,
     outdoors: bool,
     lighting: Lighting,
@@ -109,7 +111,7 @@ impl SceneChoices {
         SceneChoices { sky: sun.map(|sun| sun.sky_at(0)).or(self.sky), ..self }
     }
 
-    /// For a picture to look at, not for numbers or a study: a model without camera is shown outdoors under a sky.
+    /// For a picture to look at, not for numbers or a study: a model is shown outdoors under a sky.
     pub(crate) fn of_picture(self, is_picture: bool) -> SceneChoices {
         SceneChoices { outdoors: is_picture && self.may_be_outdoors, ..self }
     }
@@ -155,7 +157,10 @@ impl SceneChoices {
             ));
         }
         if added.lights {
-            observer.note(if added.studio {
+            observer.note(if added.lamp {
+                "the scene has no lights: using a lamp below the ceiling, whose light its surfaces reflect \
+                 (--light, --sky or --environment replace it, --no-studio leaves a key and a fill light)"
+            } else if added.studio {
                 "the scene has no lights: using a studio, a large key light at the upper left of the camera, soft surroundings and a ground \
                  (--light, --sky or --environment replace it, --no-studio leaves a key and a fill light)"
             } else if added.lights_inside {
@@ -173,13 +178,14 @@ impl SceneChoices {
                 behind: scene.lights.background.take().map(|background| background.x),
                 ground: Some(up),
                 outdoors: false,
+                indoors: false,
             });
         }
         if added.outdoors {
             observer.note(
                 "the model stands on a ground that catches its shadows and fades into the sky (--no-studio omits it)",
             );
-            return Ok(Applied { behind: None, ground: Some(up), outdoors: true });
+            return Ok(Applied { behind: None, ground: Some(up), outdoors: true, indoors: false });
         }
         if self.ground {
             scene.add_ground(up);
@@ -187,7 +193,7 @@ impl SceneChoices {
         let lights = &scene.lights;
         let is_open = self.background.is_none() && lights.background.is_none() && lights.environment.is_none();
         let behind = (self.ground && is_open).then_some(GROUND_BACKGROUND);
-        Ok(Applied { behind, ground: self.ground.then_some(up), outdoors: false })
+        Ok(Applied { behind, ground: self.ground.then_some(up), outdoors: false, indoors: added.indoors })
     }
 
     /// What is up, and why it is not what is usual.

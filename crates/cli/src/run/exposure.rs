@@ -161,12 +161,13 @@ impl Behind {
     }
 }
 
-/// The exposure of image files that are asked for with `chosen`. Candela and lux say nothing of the range of a screen.
-pub(crate) fn exposure(scene: &Scene, chosen: Option<Exposure>) -> Exposure {
+/// The exposure of image files that are asked for with `chosen`. Candela and lux say nothing of the range of a screen, nor does a sky of what is
+/// seen `indoors`.
+pub(crate) fn exposure(scene: &Scene, chosen: Option<Exposure>, indoors: bool) -> Exposure {
     let photometric = scene.lights.iter().any(|light| light.falloff == Falloff::InverseSquare);
     match chosen {
         Some(chosen) => chosen,
-        None if photometric => Exposure::Auto,
+        None if photometric || indoors => Exposure::Auto,
         None => Exposure::Stops(0.0),
     }
 }

@@ -77,7 +77,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 /// How the image is exposed: not at all if its file stores linear values.
 fn metering(scene: &mut Scene, plan: &RenderPlan, applied: &Applied) -> Metering {
     let is_linear = plan.files.format() == Some(Format::Exr);
-    let exposure = if is_linear { Exposure::Stops(0.0) } else { exposure(scene, plan.files.exposure) };
+    let exposure = if is_linear { Exposure::Stops(0.0) } else { exposure(scene, plan.files.exposure, applied.indoors) };
     Metering::new(scene, exposure, plan.settings.transparent, applied.behind)
         .of_highlights(applied.outdoors && !is_linear, plan.files.exposure)
 }

@@ -127,13 +127,29 @@ fn a_model_under_a_sky_stands_on_a_ground_before_the_horizon() {
     let [sky, ground] = [frame.color()[0], frame.color()[31 * 32]];
     assert!(sky[2] > 1.2 * sky[0] && ground[2] < ground[0], "{sky:?} {ground:?}: blue above, not below");
     assert_eq!(picture(&["--sky", "clear", "--ground"]).0, clear, "there is a ground already");
-    // As it is seen by numbers and with a camera of one's own.
+    // From a camera of one's own, too; there is no ground above it.
+    let from = |place: &str| picture(&["--sky", "clear", "--camera", place]).1.contains("stands on a ground");
+    assert_eq!(["2,2,5;0,0,0;40", "2,-2,5;0,0,0;40"].map(from), [true, false]);
+    // As it is seen by numbers.
     let (plain, notes) = picture(&["--sky", "clear", "--no-studio"]);
     assert!(plain != clear && !notes.contains("stands on a ground"), "{notes}");
-    for flags in [&["--camera", "2,2,5;0,0,0;40"][..], &["--background", "0.5"]] {
-        let flags = [&["--sky", "clear"], flags].concat();
-        assert_eq!(picture(&flags).0, picture(&[&flags[..], &["--no-studio"]].concat()).0, "{flags:?}");
-    }
+    let flags = ["--sky", "clear", "--background", "0.5"];
+    assert_eq!(picture(&flags).0, picture(&[&flags[..], &["--no-studio"]].concat()).0);
+}
+
+#[test]
+fn an_interior_under_a_sky_is_exposed_automatically() {
+    let place = place();
+    // A closed room but for a slit beside one of its walls.
+    let room = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\nv 1 1 0.8\nv 1 -1 0.8\n\
+                f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\nf 2 10 9 3\n";
+    place.write("room.obj", room);
+    let base = ["render", "room.obj", "--size", "16x16", "--quality", "draft", "--up", "y", "-o", "a.png", "--sky"];
+    let notes = |flags: &[&str]| place.good(&[&base[..], flags].concat()).stderr;
+    let seen = notes(&["clear;sun=30,180"]);
+    assert!(seen.contains("stands inside") && seen.contains("exposure auto"), "{seen}");
+    assert!(!notes(&["clear;sun=30,180", "--exposure", "0"]).contains("exposure auto"));
+    assert!(!notes(&["clear;sun=30,180", "--no-studio"]).contains("exposure auto"), "as numbers are");
 }
 
 #[test]

@@ -297,7 +297,7 @@ parse_by_name!(Filter, "filter");
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AmbientSource {
-    /// The mesh where an environment gives the ambient light, or all lights are lamps, unless ambient light is set or these are the lights of a
+    /// The mesh where an environment gives the ambient light, or all lights are lamps, or the program put one into a room, unless ambient light is set or these are the lights of a
     /// [studio](lightmesh_scene::Lighting::Studio); else a constant.
     #[default]
     Auto,
@@ -343,7 +343,8 @@ impl AmbientSource {
         let lights = &scene.lights;
         match lights.ambient {
             None if lights.studio => AmbientSource::Constant,
-            None if lights.environment.is_some() || lights.are_lamps() || scene.geometry.glows() => AmbientSource::Mesh,
+            None if lights.environment.is_some() || lights.room || lights.are_lamps() => AmbientSource::Mesh,
+            None if scene.geometry.glows() => AmbientSource::Mesh,
             _ => AmbientSource::Constant,
         }
     }

@@ -385,10 +385,10 @@ struct Glint {
     seen: bool,
 }
 
-/// How rays see a light, bits of [`scene::Light`]'s constants: as an emissive surface, or the sun of what surrounds the scene, or as a surface that is
-/// none of the scene's. What a studio's key light is in mirrors, its panorama shows.
+/// How rays see a light, bits of [`scene::Light`]'s constants: as an emissive surface, or a part of what surrounds the scene, such as the sun and the soft box
+/// around a studio's key light, or as a surface that is none of the scene's.
 pub(crate) fn seen_as(lights: &Lights, light: &Light) -> u32 {
-    if light.lamp || lights.surroundings_show(light) {
+    if light.lamp || lights.studio || lights.surroundings_show(light) {
         scene::Light::SEEN
     } else if lights.is_shown(light) {
         scene::Light::SEEN | scene::Light::SURFACE | if light.visible { scene::Light::CAMERA } else { 0 }

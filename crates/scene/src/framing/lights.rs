@@ -1,10 +1,12 @@
 //! Lights inside, for a camera that sees what lights outside do not reach.
 
+use std::f32::consts::PI;
+
 use glam::Vec3;
 
 use super::rays::{directions, sparse_rays};
 use super::sight::Sight;
-use crate::{Bounds, Camera, Light, Projection};
+use crate::{Bounds, Camera, Falloff, Light, LightKind, Projection};
 
 /// By how much what is seen is moved towards the camera, as a share of the diagonal: off its surface.
 const OFF: f32 = 1e-4;
@@ -22,6 +24,12 @@ const ABOVE_EYE: f32 = 0.3;
 /// The largest radius of a light as a share of the distance to what is next to it.
 const ELBOW: f32 = 0.5;
 
+/// How high a lamp may hang, as a share of the scene's height: above a lower ceiling, it reaches nothing. Its radius, as a share of the diagonal.
+const LAMP_HEIGHTS: [f32; 6] = [0.97, 0.9, 0.8, 0.7, 0.6, 0.5];
+const LAMP_RADIUS: f32 = 0.08;
+/// What is about as high as a lamp or below it: directions that rise by at most this sine.
+const LEVEL: f32 = 0.3;
+
 /// Strengths of the lights inside, and the ambient term that goes with them: a white surface is not clipped.
 const KEY_LIGHT: f32 = 0.6;
 const FILL_LIGHT: f32 = 0.2;
@@ -36,10 +44,7 @@ struct Point {
 /// A key light and a fill light in the space that the camera sees, if `key` reaches too little of it.
 pub(super) fn inside(sight: &Sight, bounds: &Bounds, camera: &Camera, key: Vec3, spread: f32) -> Option<[Light; 2]> {
     let points = seen(sight, bounds, camera);
-    let reached = |light: Vec3| {
-        let faces = |point: &&Point| (light - point.position).dot(point.normal) > 0.0;
-        points.iter().filter(faces).filter(|point| sight.is_free(point.position, light)).count()
-    };
+    let reached = |light: Vec3| reached(sight, &points, light);
     let outside = reached(key);
     if outside as f32 >= REACHED * points.len() as f32 {
         return None;
@@ -61,6 +66,35 @@ pub(super) fn inside(sight: &Sight, bounds: &Bounds, camera: &Camera, key: Vec3,
     };
     let above_eye = start + ABOVE_EYE * ceiling(start) * up;
     Some([light("key", places[taken], KEY_LIGHT), light("fill", above_eye, FILL_LIGHT)])
+}
+
+/// A round panel high above the middle of a room that this camera looks into: below its ceiling. A white floor below it is white.
+pub(super) fn lamp(sight: &Sight, bounds: &Bounds, camera: &Camera) -> Light {
+    let up = upwards(camera);
+    let points = seen(sight, bounds, camera);
+    let height = bounds.extent().dot(up.abs());
+    let floor = bounds.center() - 0.5 * height * up;
+    let places = LAMP_HEIGHTS.map(|share| floor + share * height * up);
+    let shares = places.map(|place| reached(sight, &points, place));
+    let best = shares.into_iter().max().unwrap_or_default();
+    let taken = shares.iter().position(|&share| share as f32 >= NEARLY * best as f32).unwrap_or_default();
+    let position = places[taken];
+    let level = directions().into_iter().filter(|direction| direction.dot(up) <= LEVEL);
+    let room = level.map(|direction| sight.free(position, direction, bounds.diagonal())).fold(f32::INFINITY, f32::min);
+    let radius = (LAMP_RADIUS * bounds.diagonal()).min(ELBOW * room);
+    let above = sight.free(position, -up, bounds.diagonal());
+    Light::new(LightKind::Disk { position, normal: -up, radius })
+        .with_one_sided(true)
+        .with_visible(true)
+        .with_falloff(Falloff::InverseSquare)
+        .with_intensity([PI * above * above; 3])
+        .named("lamp")
+}
+
+/// How many of these points a light reaches.
+fn reached(sight: &Sight, points: &[Point], light: Vec3) -> usize {
+    let faces = |point: &&Point| (light - point.position).dot(point.normal) > 0.0;
+    points.iter().filter(faces).filter(|point| sight.is_free(point.position, light)).count()
 }
 
 /// What the camera sees.

@@ -77,7 +77,13 @@ fn a_uniform_sky_stays_uniform_and_a_camera_stays_where_it_is() {
     let camera = Camera::look_at(Vec3::splat(5.0), Vec3::ZERO, Vec3::Y, 40.0).unwrap();
     let mut own = scene(clear(), Up::Y).with_cameras(vec![camera]);
     let before = own.clone();
+    let added = own.complete_outdoors(Up::Y, 1.0);
+    assert!(added.outdoors && !added.camera && !added.indoors);
+    assert_eq!(own.cameras, before.cameras);
+    assert_eq!(own.geometry.mesh.triangles.len(), 14, "a ground");
+    // From below, the ground would hide the model.
+    let below = Camera::look_at(Vec3::new(1.0, -5.0, 0.0), Vec3::ZERO, Vec3::X, 40.0).unwrap();
+    let mut own = scene(clear(), Up::Y).with_cameras(vec![below]);
     assert!(!own.complete_outdoors(Up::Y, 1.0).outdoors);
-    assert_eq!((own.cameras, own.lights), (before.cameras, before.lights));
-    assert_eq!(own.geometry.mesh.triangles.len(), 12, "no ground");
+    assert_eq!((own.lights, own.geometry.mesh.triangles.len()), (before.lights, 12));
 }

@@ -41,6 +41,9 @@ fn assert_framed_for(points: &[Vec3], camera: &Camera, aspect: f32) {
     // It fills the image from one border to the other.
     let fills = |axis: usize| extents[axis].min(extents[axis + 1]) > FILL - 1e-3;
     assert!(fills(0) || fills(2), "{extents:?}");
+    // In the middle along the other axis, too.
+    let beside = (extents[0] - extents[1]).abs().max((extents[2] - extents[3]).abs());
+    assert!(beside < 1e-3, "{extents:?}");
 }
 
 #[test]

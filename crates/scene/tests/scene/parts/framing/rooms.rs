@@ -1,5 +1,5 @@
 use glam::Vec3;
-use lightmesh_scene::{Added, Mesh, Scene, SceneBuilder, Up, Viewpoint};
+use lightmesh_scene::{Added, Falloff, LightKind, Lighting, Mesh, Scene, SceneBuilder, Up, Viewpoint};
 
 /// A cube from -1 to 1 whose faces are seen from inside, or from outside. The sides given are left out: 0 is -x, 1 is +x, 2 is -y, and so on.
 fn cube(inwards: bool, open: &[usize]) -> Mesh {
@@ -58,6 +58,35 @@ fn a_room_without_one_wall_is_seen_through_it() {
     }
     // A court is open to the sky.
     assert_eq!(completed(cube(true, &[3]), Up::Y).1.viewpoint, Viewpoint::Inside);
+}
+
+#[test]
+fn a_room_without_one_wall_has_a_lamp_below_its_ceiling() {
+    let lit = |mesh: Mesh, lighting: Lighting| {
+        let mut scene = SceneBuilder::new().finish_scene("room");
+        scene.geometry_mut().mesh = mesh;
+        let added = scene.complete_with(lighting, Up::Y, 1.0);
+        (scene, added)
+    };
+    let (scene, added) = lit(cube(true, &[4]), Lighting::Studio);
+    assert!(added.lamp && added.lights && !added.studio && scene.lights.room);
+    let [lamp] = &scene.lights.list[..] else { panic!("{:?}", scene.lights.list) };
+    let LightKind::Disk { position, radius, .. } = lamp.kind else { panic!("{lamp:?}") };
+    // In the middle, 6 cm below a ceiling 2 m high, and between the walls.
+    assert!((position - Vec3::new(0.0, 0.97, 0.0)).abs().max_element() < 0.04, "{position}");
+    assert!(radius > 0.1 && radius < 0.5, "{radius}");
+    assert_eq!((lamp.surface, lamp.falloff), (Some(Vec3::NEG_Y), Falloff::InverseSquare));
+    // A white floor below it is white: I / (π d²).
+    assert!((lamp.intensity.x / (std::f32::consts::PI * (position.y + 1.0).powi(2)) - 1.0).abs() < 1e-3);
+    for (mesh, lighting) in [
+        (cube(true, &[4]), Lighting::KeyAndFill),
+        (cube(true, &[4]), Lighting::StudioAnywhere),
+        (cube(true, &[]), Lighting::Studio),
+        (cube(false, &[]), Lighting::Studio),
+    ] {
+        let (scene, added) = lit(mesh, lighting);
+        assert!(!added.lamp && !scene.lights.room, "{lighting:?}");
+    }
 }
 
 #[test]
