@@ -45,6 +45,7 @@ def checks(options, folder):
     program = Program(options, folder)
     yield from measured()
     yield from lines_of_sight(program)
+    yield from pieces()
     yield from closed(program)
     yield from ways(program)
 
@@ -82,6 +83,18 @@ def lines_of_sight(program):
         # Balls have facets there.
         share = float((off > 0.02).mean())
         yield f"what is seen in {name}", share < 1e-3 and missing < 1e-3, f"{share:.5f} elsewhere, {missing:.5f} missing"
+
+
+def pieces():
+    """On the axis of a disk, or of a ball, a wall shows kd L sin² α, α half the angle at which it is seen."""
+    for case in near.cases():
+        kind, _, share = case.name.partition(" at ")
+        if kind in ("disk", "ball"):
+            size = near.DISK if kind == "disk" else near.BALL
+            away = 2 * float(share) * size
+            square = size**2 / (size**2 + away**2) if kind == "disk" else size**2 / (size + away) ** 2
+            off = float(case.true(np.zeros((1, 3)))[0] / (near.KD * case.radiance * square) - 1)
+            yield f"pieces of a {case.name}", abs(off) < 0.003, f"{off:+.5f}"
 
 
 def closed(program):

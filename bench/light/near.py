@@ -17,6 +17,8 @@ SHARES = (0.1, 0.25, 0.5)
 STEP = 3
 """Every so many pixels each way are compared."""
 LONG, THIN, SQUARE, DISK, BALL = 1.0, 0.01, 0.5, 0.25, 0.1
+RINGS, AROUND = 64, 96
+"""Pieces of a disk from its middle to its edge, and of a ball for a quarter of its circumference; and around the middle."""
 
 
 @dataclass
@@ -53,32 +55,36 @@ def cases():
 def facing(name, share, length, width, height):
     light = f'kind = "rectangle"\nposition = [0, 0, {share * length}]\nu = [{width}, 0, 0]\nv = [0, {-height}, 0]\n'
     points = rectangle((width, 0, 0), (0, height, 0), (0, 0, share * length))
-    return lit(f"{name} that faces the wall at {share}", light, points, (0, 0, -1), width * height, 1 / (width * height))
+    areas = np.full(len(points), width * height / len(points))
+    return lit(f"{name} that faces the wall at {share}", light, points, (0, 0, -1), areas, 1 / (width * height))
 
 
 def beside(share):
     """A strip along the wall that shines down."""
     light = f'kind = "rectangle"\nposition = [0, 0.3, {share * LONG}]\nu = [{LONG}, 0, 0]\nv = [0, 0, {THIN}]\n'
     points = rectangle((LONG, 0, 0), (0, 0, THIN), (0, 0.3, share * LONG))
-    return lit(f"strip along the wall at {share}", light, points, (0, -1, 0), LONG * THIN, 1 / (LONG * THIN))
+    areas = np.full(len(points), LONG * THIN / len(points))
+    return lit(f"strip along the wall at {share}", light, points, (0, -1, 0), areas, 1 / (LONG * THIN))
 
 
 def disk(share):
     light = f'kind = "disk"\nposition = [0, 0, {2 * share * DISK}]\ndirection = [0, 0, -1]\nradius = {DISK}\n'
-    radii, angles = np.meshgrid(np.sqrt((np.arange(40) + 0.5) / 40), (np.arange(64) + 0.5) * np.pi / 32)
-    points = np.stack([DISK * radii * np.cos(angles), DISK * radii * np.sin(angles), np.full(radii.shape, 2 * share * DISK)], -1).reshape(-1, 3)
-    return lit(f"disk at {share}", light, points, (0, 0, -1), np.pi * DISK**2, 1 / (np.pi * DISK**2))
+    # Rings of one width: rings of one area would be wide in the middle, where the wall is nearest.
+    radii, angles = np.meshgrid((np.arange(RINGS) + 0.5) / RINGS, (np.arange(AROUND) + 0.5) * 2 * np.pi / AROUND)
+    points = DISK * np.stack([radii * np.cos(angles), radii * np.sin(angles), np.full(radii.shape, 2 * share)], -1).reshape(-1, 3)
+    return lit(f"disk at {share}", light, points, (0, 0, -1), radii.ravel() * 2 * np.pi / (RINGS * AROUND) * DISK**2, 1 / (np.pi * DISK**2))
 
 
 def ball(share):
     """The distance is that of its surface."""
     away = BALL + 2 * share * BALL
     light = f'kind = "sphere"\nposition = [0, 0, {away}]\nradius = {BALL}\n'
-    heights, angles = np.meshgrid((np.arange(64) + 0.5) / 32 - 1, (np.arange(96) + 0.5) * np.pi / 48)
-    around = np.sqrt(1 - heights**2)
-    normals = np.stack([around * np.cos(angles), around * np.sin(angles), heights], -1).reshape(-1, 3)
+    # Of one width, too.
+    down, angles = np.meshgrid((np.arange(2 * RINGS) + 0.5) * np.pi / (2 * RINGS), (np.arange(AROUND) + 0.5) * 2 * np.pi / AROUND)
+    normals = np.stack([np.sin(down) * np.cos(angles), np.sin(down) * np.sin(angles), -np.cos(down)], -1).reshape(-1, 3)
     middle = np.array([0, 0, away])
-    return lit(f"ball at {share}", light, middle + BALL * normals, normals, 4 * np.pi * BALL**2, 1 / (np.pi * BALL**2))
+    areas = np.sin(down).ravel() * np.pi / (2 * RINGS) * 2 * np.pi / AROUND * BALL**2
+    return lit(f"ball at {share}", light, middle + BALL * normals, normals, areas, 1 / (np.pi * BALL**2))
 
 
 def glowing(share):
@@ -91,10 +97,10 @@ def glowing(share):
     return Case(name, text, points, np.array([0, 0, -1.0]), np.full(len(points), SQUARE**2 / len(points)), 4.0, hides=True)
 
 
-def lit(name, light, points, normals, area, radiance):
+def lit(name, light, points, normals, areas, radiance):
     light = f'[[light]]\n{light}intensity = 1\nfalloff = "inverse-square"\n'
     text = "\n".join([built.camera((0, 0, 2.4), (0, 0, 0), 50), "[ambient]\nintensity = [0, 0, 0]\n", wall(), light])
-    return Case(name, text, points, np.array(normals, float), np.full(len(points), area / len(points)), radiance)
+    return Case(name, text, points, np.array(normals, float), areas, radiance)
 
 
 def wall():

@@ -347,6 +347,10 @@ constants! {
     WIDE_SUN: f32 = 0.026_18;
     /// A light is near in part from here on, as its size over its distance: up to there, the mean of a few of its points is within 0.003.
     NEAR_LIGHT: f32 = 0.125;
+    /// Surface points that are nearer to an emissive ball than this share of their distance from its centre see it from there.
+    BEFORE_BODY: f32 = 1.0 / 1024.0;
+    /// More than the square root of 2: no ray to an emissive ball ends farther from its centre, in radii.
+    ASIDE_OF_BODY: f32 = 1.4143;
     /// Corners of a polygon that represents a disc.
     DISC_CORNERS: u32 = 32;
     /// The cosine of the angle between two of them,

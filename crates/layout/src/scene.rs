@@ -37,6 +37,8 @@ records! {
         surface: u32,
         /// How it is seen, bits of [`Light`]'s constants.
         seen: u32,
+        /// The radius of an emissive ball that it stands for, which hides none of its light; else 0.
+        body: f32,
     }
 
     /// The vertices of a triangle.

@@ -109,6 +109,20 @@ DEVICE Vec3 light_point(const Light &light, Vec3 from, float reach, Vec3 u) {
     return light.position;
 }
 
+// Where a shadow ray to a point of a light ends: there, or in the plane that touches an emissive ball where it is nearest.
+DEVICE Vec3 before_body(const Light &light, Vec3 from, Vec3 target) {
+    if (light.body == 0.0f)
+        return target;
+    const Vec3 way = light.position - from, to = target - from;
+    const float distance = length(way);
+    const float near = larger(distance - light.body, BEFORE_BODY * distance) * distance;
+    const float along = dot(way, to);
+    return along > near ? from + near / along * to : target;
+}
+
+// The radius of the disc that an emissive ball of the radius `body` covers in that plane, at the distance `near`.
+DEVICE float covered_by_body(float body, float near) { return body * sqrtf(near / (near + 2.0f * body)); }
+
 // The distance of a directional light from `from`: twin of prepared.rs.
 DEVICE float scene_reach(const Scene &scene, Vec3 from) {
     return scene.far + 2.0f * element_sum(abs(from - scene.center));

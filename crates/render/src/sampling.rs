@@ -8,8 +8,8 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, u32x8};
 use glam::Vec3;
 use lightmesh_layout::constants::{
-    GOLDEN_RATIO, LAST_DIGIT, MIX_1, MIX_2, OWEN_1, OWEN_2, OWEN_3, OWEN_4, SAMPLE_DIGITS, UPPER_BITS, UPPER_BYTES,
-    UPPER_NIBBLES, UPPER_PAIRS,
+    BEFORE_BODY, GOLDEN_RATIO, LAST_DIGIT, MIX_1, MIX_2, OWEN_1, OWEN_2, OWEN_3, OWEN_4, SAMPLE_DIGITS, UPPER_BITS,
+    UPPER_BYTES, UPPER_NIBBLES, UPPER_PAIRS,
 };
 use lightmesh_scene::{Light, LightKind};
 
@@ -187,6 +187,36 @@ pub fn light_center(light: &Light, from: Vec3, reach: f32) -> Vec3 {
         LightKind::Directional { direction, .. } => from - reach * direction,
         _ => light.position().unwrap_or(from),
     }
+}
+
+/// The radius of an emissive ball that `light` stands for, which hides none of its light; 0 if there is none.
+#[inline(always)]
+pub(crate) fn body(light: &Light) -> f32 {
+    match light.kind {
+        LightKind::Sphere { radius, .. } if light.lamp => radius,
+        _ => 0.0,
+    }
+}
+
+/// Where a shadow ray from `from` to a point of `light` ends: there, or, if that is an emissive ball, in the plane that touches the ball where it is
+/// nearest. The ball covers the same directions there, and lies behind.
+#[inline(always)]
+pub(crate) fn before_body(light: &Light, from: Vec3, target: Vec3) -> Vec3 {
+    let body = body(light);
+    if body == 0.0 {
+        return target;
+    }
+    let (way, to) = (light_center(light, from, 0.0) - from, target - from);
+    let distance = way.length();
+    let near = (distance - body).max(BEFORE_BODY * distance) * distance;
+    let along = way.dot(to);
+    if along > near { from + near / along * to } else { target }
+}
+
+/// The radius of the disc that an emissive ball of the radius `body` covers in that plane, at the distance `near`.
+#[inline(always)]
+pub(crate) fn covered_by_body(body: f32, near: f32) -> f32 {
+    body * (near / (near + 2.0 * body)).sqrt()
 }
 
 /// The radius of the disk that a directional light of this angular diameter comes from, at distance 1.

@@ -120,7 +120,7 @@ fn rounded(mut scene: Scene) -> Scene {
     scene
 }
 
-/// A room with a lamp that is a box, one that is a panel, and a glowing wall.
+/// A room with a lamp that is a box, one that is a panel, one that is a ball, and a glowing wall.
 fn lamps() -> Scene {
     let [wall, lamp, glow] = [[0.0; 3], [6.0, 5.0, 4.0], [0.2, 0.1, 0.3]]
         .map(|emission| Material::matt([0.6, 0.5, 0.4]).with_emission(emission));
@@ -128,6 +128,7 @@ fn lamps() -> Scene {
     let draft = draft.cuboid([-2.0, 0.0, -1.0], [-1.0, 1.5, 0.0]).painted(wall.named("other").with_ks([0.2; 3]));
     let draft = draft.cuboid([1.0, 0.0, -2.0], [2.0, 0.7, -1.0]);
     let draft = draft.painted(lamp.clone().named("box")).cuboid([0.2, 3.0, 0.1], [0.7, 3.25, 0.5]);
+    let draft = draft.painted(lamp.clone().named("ball")).smooth_ball(DVec3::new(-0.4, 1.4, -0.6), 0.2, [6, 8]);
     let draft = draft.painted(lamp.named("panel"));
     let draft = draft.quad([[-3.0, 3.0, 1.0], [-2.0, 3.0, 1.0], [-2.0, 3.2, 2.0], [-3.0, 3.2, 2.0]]);
     let draft = draft.painted(glow.named("glow")).quad([
@@ -141,7 +142,8 @@ fn lamps() -> Scene {
     // The wall is left to gather rays.
     scene.lights.list.retain(|light| light.name != "glow");
     scene.geometry_mut().materials.iter_mut().for_each(|material| material.lamp &= material.name != "glow");
-    assert!(scene.lights.len() > 4 && scene.lights.iter().all(|light| light.surface.is_some()));
+    let balls = scene.lights.iter().filter(|light| light.surface.is_none()).count();
+    assert!(scene.lights.len() > 5 && balls == 1);
     scene
 }
 

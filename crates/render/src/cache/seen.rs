@@ -3,12 +3,15 @@
 use lightmesh_scene::{Light, LightKind};
 
 use crate::job::Sampling;
+use crate::sampling::body;
 
 /// What determines the values of a column, apart from the light's index, which is the column's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// The shape of the light.
     pub kind: LightKind,
+    /// Whether it is an emissive ball, which hides none of its light.
+    pub glows: bool,
     /// Samples and seed, for an area light.
     pub sampling: Option<(u32, u64)>,
 }
@@ -16,7 +19,7 @@ pub struct Seen {
 impl Seen {
     pub(crate) fn of(light: &Light, sampling: &Sampling) -> Seen {
         let sampling = light.has_size().then_some((sampling.samples, sampling.seed));
-        Seen { kind: light.kind.clone(), sampling }
+        Seen { kind: light.kind.clone(), glows: body(light) > 0.0, sampling }
     }
 
     /// The shape of the light.

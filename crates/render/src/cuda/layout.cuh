@@ -245,6 +245,10 @@
 #define WIDE_SUN 0x1.aceeep-6f
 // A light is near in part from here on, as its size over its distance: up to there, the mean of a few of its points is within 0.003.
 #define NEAR_LIGHT 0x1p-3f
+// Surface points that are nearer to an emissive ball than this share of their distance from its centre see it from there.
+#define BEFORE_BODY 0x1p-10f
+// More than the square root of 2: no ray to an emissive ball ends farther from its centre, in radii.
+#define ASIDE_OF_BODY 0x1.6a0f9p0f
 // Corners of a polygon that represents a disc.
 #define DISC_CORNERS 32u
 // The cosine of the angle between two of them,
@@ -832,8 +836,9 @@ struct alignas(4) Light {
     float scale;
     unsigned surface;
     unsigned seen;
+    float body;
 };
-static_assert(sizeof(Light) == 96, "size of Light");
+static_assert(sizeof(Light) == 100, "size of Light");
 static_assert(PLACE_OF(Light, position) == 0, "place of Light::position");
 static_assert(PLACE_OF(Light, kind) == 12, "place of Light::kind");
 static_assert(PLACE_OF(Light, direction) == 16, "place of Light::direction");
@@ -848,6 +853,7 @@ static_assert(PLACE_OF(Light, cone_scale) == 80, "place of Light::cone_scale");
 static_assert(PLACE_OF(Light, scale) == 84, "place of Light::scale");
 static_assert(PLACE_OF(Light, surface) == 88, "place of Light::surface");
 static_assert(PLACE_OF(Light, seen) == 92, "place of Light::seen");
+static_assert(PLACE_OF(Light, body) == 96, "place of Light::body");
 
 struct alignas(4) Indices {
     unsigned vertices[3];

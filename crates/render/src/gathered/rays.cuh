@@ -161,7 +161,7 @@ DEVICE unsigned add_lights(const Fans &fans, const Structure &structure, const S
         if (gain == splat(0.0f))
             continue;
         ++cast;
-        if (!hidden(structure, fans.tally, surface.point.origin, to))
+        if (!hidden(structure, fans.tally, fans.scene.lights[light], surface.point.origin, to))
             radiance = radiance + gain;
     }
     return cast;

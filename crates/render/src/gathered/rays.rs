@@ -22,9 +22,9 @@ use crate::job::Sampling;
 use crate::sampling::{light_center, random_bits};
 use crate::shading::environment::surroundings;
 use crate::shading::{LightTargets, Surface, falloff, luminance, material_of};
-use crate::shadow::{Aim, Targets, hidden, size};
+use crate::shadow::{Aim, Targets, hidden, shadow_segment, size};
 use crate::stages::primary_rays::cpu::{batch, closest_hits};
-use crate::surface::{SurfacePoint, long_segment};
+use crate::surface::SurfacePoint;
 
 /// The rays of one site: `side`² directions, one in each part of the hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -351,7 +351,7 @@ impl Segments {
             let arriving = arriving.unwrap_or_else(|| surface.arriving_from(light, target)) / chance;
             let gain = surface.coefficients.all * arriving;
             if gain != Vec3::ZERO {
-                self.rays.push(long_segment(point.origin, target));
+                self.rays.push(shadow_segment(light, point.origin, target));
                 self.gains.push((place, gain));
             }
         }

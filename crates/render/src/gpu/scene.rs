@@ -473,6 +473,7 @@ fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
         size: crate::shadow::size(light, 1.0),
         scale: crate::shadow::sight::scale(geometry, light),
         surface: u32::from(light.surface.is_some()),
+        body: crate::sampling::body(light),
         ..Zeroable::zeroed()
     };
     match light.kind {

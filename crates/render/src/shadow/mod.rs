@@ -18,7 +18,7 @@ use crate::accel::Ray;
 use crate::counters::Tally;
 use crate::data::wave::{HostWave, Wave};
 use crate::job::Sampling;
-use crate::sampling::{Pattern, disk_radius, light_center, light_point};
+use crate::sampling::{Pattern, before_body, disk_radius, light_center, light_point};
 use crate::surface::{SurfacePoint, long_segment};
 
 /// Maximum number of segments passed on at once: they stay in a core's cache.
@@ -93,6 +93,12 @@ impl<'a> Targets<'a> {
     }
 }
 
+/// The shadow ray from `from` to a point of `light`.
+#[inline(always)]
+pub(crate) fn shadow_segment(light: &Light, from: Vec3, target: Vec3) -> Ray {
+    long_segment(from, before_body(light, from, target))
+}
+
 /// Whether each of some segments is blocked. Everything that can hide a light is decided here.
 pub(crate) fn hidden(wave: &HostWave, segments: &[Ray]) -> Vec<bool> {
     let mut hidden = vec![false; segments.len()];
@@ -108,7 +114,7 @@ pub(crate) fn each_shadow_ray(point: &SurfacePoint, targets: &Targets, samples: 
     let Targets { light, from, reach, ref pattern } = *targets;
     let mut cast = |target: Vec3| {
         if point.normal.dot(target - point.origin) > 0.0 {
-            take(long_segment(point.origin, target));
+            take(shadow_segment(light, point.origin, target));
         }
     };
     match pattern {

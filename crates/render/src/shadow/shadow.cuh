@@ -53,10 +53,13 @@ DEVICE Vec3 target(const Targets &targets, unsigned sample) {
                           : light_center(targets.light, targets.from, targets.reach);
 }
 
-// Whether anything hides `target` from `from`. Everything that can hide a light is decided here.
+// The shadow ray from `from` to a point of a light.
+DEVICE Ray shadow_segment(const Light &light, Vec3 from, Vec3 target) { return long_segment(from, before_body(light, from, target)); }
+
+// Whether anything hides the point `target` of a light from `from`. Everything that can hide a light is decided here.
 template <class Structure>
-DEVICE bool hidden(const Structure &structure, const Tally &tally, Vec3 from, Vec3 target) {
-    return occluded(structure, tally, long_segment(from, target));
+DEVICE bool hidden(const Structure &structure, const Tally &tally, const Light &light, Vec3 from, Vec3 target) {
+    return occluded(structure, tally, shadow_segment(light, from, target));
 }
 
 // The number of shadow rays from a surface point that reach the light, of the samples from `first` to `end`. Counts those that are
@@ -70,7 +73,7 @@ DEVICE unsigned rays_that_arrive(const Structure &structure, const Tally &tally,
         if (!(dot(point.normal, to - point.origin) > 0.0f))
             continue;
         ++cast;
-        seen += !hidden(structure, tally, point.origin, to);
+        seen += !hidden(structure, tally, targets.light, point.origin, to);
     }
     return seen;
 }

@@ -72,14 +72,15 @@ DEVICE void rectangle_sight(Sight &sight, const Light &light, unsigned lines, fl
     sight.across = v;
 }
 
-// The samples of a disc about the `center` of a light.
+// The samples of a disc about `center`.
 DEVICE void disc_sight(Sight &sight, const Light &light, Vec3 center, float reach, unsigned lines, float turn, float aside) {
     Vec3 tangent = light.half_u, bitangent = light.half_v;
     if (light.kind == Light::POINT || light.kind == Light::SPHERE)
         facing(center, tangent, bitangent);
     const float square = turn * turn;
     const float cosine = (1.0f - square) / (1.0f + square), sine = 2.0f * turn / (1.0f + square);
-    const float radius = light.scale * (light.kind == Light::DIRECTIONAL ? reach * light.radius : light.radius);
+    const float disc = light.body > 0.0f ? covered_by_body(light.body, length(center)) : light.radius;
+    const float radius = light.scale * (light.kind == Light::DIRECTIONAL ? reach * light.radius : disc);
     sight.along = radius * (cosine * tangent + sine * bitangent);
     sight.across = radius * (cosine * bitangent - sine * tangent);
     if (lines == 1) {
@@ -94,7 +95,7 @@ DEVICE Sight sight_of(const Scene &scene, const Sampling &sampling, unsigned ind
                       const SurfacePoint &point, unsigned long long key) {
     const Light &light = scene.lights[index];
     const float reach = scene_reach(scene, point.origin);
-    const Vec3 target = light_center(light, point.origin, reach);
+    const Vec3 target = before_body(light, point.origin, light_center(light, point.origin, reach));
     const Vec3 center = target - point.origin;
     const float length = max_element(abs(center));
     const float error = GAMMA_32 * max_element(max(abs(point.origin), abs(target)));
@@ -150,6 +151,9 @@ DEVICE unsigned valid_samples(const Sight &sight, const SampleRows &set, unsigne
 
 // ---- Searches ----
 
+// No sample of a ball is farther from its centre.
+DEVICE float ball_extent(const Light &light) { return light.body > 0.0f ? ASIDE_OF_BODY * light.body : light.radius; }
+
 // Half the edges of the box around a light, if a directional one is `reach` away.
 DEVICE Vec3 half_extent(const Light &light, float reach) {
     if (light.kind == Light::RECTANGLE)
@@ -159,7 +163,7 @@ DEVICE Vec3 half_extent(const Light &light, float reach) {
         const float radius = GROWN * (light.kind == Light::DISK ? light.radius : reach * light.radius);
         return radius * Vec3{rough_root(rest.x), rough_root(rest.y), rough_root(rest.z)};
     }
-    return splat(light.kind == Light::POINT || light.kind == Light::SPHERE ? light.radius : 0.0f);
+    return splat(light.kind == Light::POINT || light.kind == Light::SPHERE ? ball_extent(light) : 0.0f);
 }
 
 // A box around the samples of a light as seen from `origins`.

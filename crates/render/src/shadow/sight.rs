@@ -2,7 +2,8 @@
 //! `sight.cuh`.
 //!
 //! Seen from a point, a ball is the disc through its centre that faces the point, evenly bright; so is a point light with a spread, and a
-//! sun of an angular size. Disks and rectangles are what they are. A light without a size is a single sample.
+//! sun of an angular size. An emissive ball is the disc that covers the same directions [before it](before_body): it hides none of its own light.
+//! Disks and rectangles are what they are. A light without a size is a single sample.
 //!
 //! All vectors are multiplied by a power of two, [`scale`], so that products with triangles, three lengths each, stay in the middle of
 //! the range of single precision.
@@ -10,7 +11,7 @@
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use glam::Vec3;
-use lightmesh_layout::constants::{GAMMA_32, GROWN, SHADOW_MARGIN, SHIFTS};
+use lightmesh_layout::constants::{ASIDE_OF_BODY, GAMMA_32, GROWN, SHADOW_MARGIN, SHIFTS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::{Bounds, Light, LightKind};
 
@@ -20,7 +21,7 @@ use super::terminator::ShadowPoint;
 use crate::accel::Region;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
-use crate::sampling::{disk_radius, light_center, random_bits};
+use crate::sampling::{before_body, body, covered_by_body, disk_radius, light_center, random_bits};
 use crate::simd::{Axes, difference, dot, scaled, splat};
 use crate::surface::SurfacePoint;
 
@@ -161,7 +162,8 @@ impl<'a> Emitter<'a> {
         mut take: impl FnMut(u32, Vec3),
     ) {
         if self.is_point() {
-            take(0, light_center(self.light, point.origin, wave.scene.geometry.reach(point.origin)));
+            let center = light_center(self.light, point.origin, wave.scene.geometry.reach(point.origin));
+            take(0, before_body(self.light, point.origin, center));
             return;
         }
         let sight = self.sight(wave, ray, point);
@@ -207,9 +209,15 @@ impl<'a> Emitter<'a> {
         Bounds { min: middle.min - half, max: middle.max + half }
     }
 
+    /// The radius of an emissive ball that it stands for: what lies in it hides nothing. 0 if there is none.
+    pub(crate) fn body(&self) -> f32 {
+        body(self.light)
+    }
+
     /// No sample is farther from the middle of the box; infinite if the box says more.
     pub(crate) fn radius(&self) -> f32 {
         match self.light.kind {
+            LightKind::Sphere { radius, .. } if body(self.light) > 0.0 => ASIDE_OF_BODY * radius,
             LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } => radius,
             LightKind::Spot { radius, .. } if radius > 0.0 => radius,
             _ => f32::INFINITY,
@@ -241,6 +249,7 @@ pub(crate) fn spread(light: &Light) -> f32 {
 /// Half the edges of the box around a light, if a directional one is `reach` away.
 fn half_extent(light: &Light, reach: f32) -> Vec3 {
     match light.kind {
+        LightKind::Sphere { radius, .. } if body(light) > 0.0 => Vec3::splat(ASIDE_OF_BODY * radius),
         LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } | LightKind::Spot { radius, .. } => {
             Vec3::splat(radius)
         }
@@ -284,7 +293,7 @@ impl Sight {
         (seed, key): (u64, u64),
         (reach, scale): (f32, f32),
     ) -> Sight {
-        let target = light_center(light, point.origin, reach);
+        let target = before_body(light, point.origin, light_center(light, point.origin, reach));
         let center = target - point.origin;
         // As for rays: see `long_segment`.
         let length = center.abs().max_element();
@@ -379,7 +388,7 @@ fn longest_first(u: Vec3, v: Vec3) -> (Vec3, Vec3) {
     if u.length_squared() >= v.length_squared() { (u, v) } else { (v, u) }
 }
 
-/// Two perpendicular unit vectors in the plane of a light's disc, and its radius. `center` is the way to its centre.
+/// Two perpendicular unit vectors in the plane of a light's disc, and its radius. `center` is the way to the middle of the disc.
 #[inline(always)]
 pub(crate) fn disc_of(light: &Light, center: Vec3, reach: f32) -> (Vec3, Vec3, f32) {
     match light.kind {
@@ -389,7 +398,8 @@ pub(crate) fn disc_of(light: &Light, center: Vec3, reach: f32) -> (Vec3, Vec3, f
         }
         LightKind::Point { spread: radius, .. } | LightKind::Sphere { radius, .. } | LightKind::Spot { radius, .. } => {
             let (tangent, bitangent) = facing(center);
-            (tangent, bitangent, radius)
+            let body = body(light);
+            (tangent, bitangent, if body > 0.0 { covered_by_body(body, center.length()) } else { radius })
         }
         LightKind::Directional { direction, angle } => {
             let (tangent, bitangent) = direction.any_orthonormal_pair();

@@ -94,6 +94,58 @@ fn a_lamp_near_a_floor_lights_it_as_its_integral_says() {
     }
 }
 
+/// A glowing ball whose surface is 2 cm over a floor, and its light.
+fn glowing_ball(draft: SceneDraft) -> Scene {
+    let glowing = Material::matt([0.0; 3]).with_emission([4.0; 3]);
+    let mut scene =
+        draft.painted(glowing).smooth_ball(DVec3::new(0.0, 0.12, 0.0), 0.1, [16, 32]).ambient(0.0).finish("ball");
+    scene.add_lamps();
+    assert_eq!(scene.lights.len(), 1);
+    scene
+}
+
+#[test]
+fn a_glowing_ball_near_a_floor_lights_it_as_a_ball_does() {
+    let scene = glowing_ball(floor(0.02));
+    // All of it is above the horizon: its projection is that of a disc.
+    let intensity = f64::from(scene.lights[0].intensity.x);
+    let shown = |point: DVec3| intensity * 0.12 / (PI * DVec3::new(0.0, 0.12, 0.0).distance(point).powi(3));
+    for mode in [Mode::RayTrace, Mode::Area, Mode::LightMesh] {
+        let frame = render(&scene, &settings(mode));
+        let worst = worst(&frame, shown);
+        assert!(worst < 0.02, "{mode:?}: {worst}");
+    }
+}
+
+#[test]
+fn a_board_just_below_a_glowing_ball_hides_it_and_the_ball_does_not() {
+    let board = [[0.0, 0.01, -2.0], [0.0, 0.01, 2.0], [2.0, 0.01, 2.0], [2.0, 0.01, -2.0]];
+    let scene = glowing_ball(floor(0.01).quad(board));
+    let intensity = f64::from(scene.lights[0].intensity.x);
+    let [area, lists] = [Mode::Area, Mode::LightMesh].map(|mode| render(&scene, &settings(mode)));
+    assert_eq!(area.image.color(), lists.image.color());
+    // About its edge, it hides a part.
+    let shown = |point: DVec3| intensity * 0.12 / (PI * DVec3::new(0.0, 0.12, 0.0).distance(point).powi(3));
+    let picture = Picture::new(&lists);
+    let (mut open, mut hidden) = (0, 0);
+    for pixel in picture.hits() {
+        let point = Vec3::from_array(picture.layers().position[pixel]).as_dvec3();
+        // The view is a little aslant: some of it begins above the board.
+        if point.y > 0.005 {
+            continue;
+        }
+        let share = f64::from(lists.image.color()[pixel][0]) / shown(point);
+        if point.x < -0.1 {
+            assert!((share - 1.0).abs() < 0.03, "{point}: {share}");
+            open += 1;
+        } else if point.x > 0.06 {
+            assert!(share < 0.01, "{point}: {share}");
+            hidden += 1;
+        }
+    }
+    assert!(open > 100 && hidden > 100, "{open}, {hidden}");
+}
+
 #[test]
 fn a_strip_lights_a_wall_beside_it_evenly() {
     // 1 m long, 1 cm wide, 2 and 6 cm from a wall; 10 cm below it, over its middle half.

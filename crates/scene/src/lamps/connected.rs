@@ -132,7 +132,7 @@ impl Triangle {
 }
 
 impl Lamp {
-    fn corners(&self) -> impl Iterator<Item = DVec3> + Clone {
+    pub(super) fn corners(&self) -> impl Iterator<Item = DVec3> + Clone {
         self.triangles.iter().flat_map(|triangle| triangle.corners)
     }
 

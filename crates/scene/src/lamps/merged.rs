@@ -46,7 +46,7 @@ pub(super) fn merged(lights: Vec<Light>) -> Vec<Light> {
         });
         let sides = ends.map(|[low, high]| high - low);
         let axis = (0..6).max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap_or(0);
-        let strength: f32 = members.iter().map(|&member| lights[member].intensity.element_sum()).sum();
+        let strength: f32 = members.iter().map(|&member| power(&lights[member]).element_sum()).sum();
         let is_one = members.len() < 2;
         let wrong = if is_one { -1.0 } else { strength * sides.iter().map(|side| side * side).sum::<f32>() };
         Group { members, axis, middle: 0.5 * (ends[axis][0] + ends[axis][1]), wrong }
@@ -72,12 +72,22 @@ pub(super) fn merged(lights: Vec<Light>) -> Vec<Light> {
 
 /// The light of a group, and its number.
 fn one(lights: &[Light], points: &[[f32; 6]], members: &[usize]) -> (usize, Light) {
-    let strength = |member: usize| lights[member].intensity.element_sum();
+    let strength = |member: usize| power(&lights[member]).element_sum();
     let sum: f32 = members.iter().map(|&member| strength(member)).sum();
     let middle: [f32; 6] =
         std::array::from_fn(|axis| members.iter().map(|&member| strength(member) / sum * points[member][axis]).sum());
     let distance = |member: usize| -> f32 { (0..6).map(|axis| (points[member][axis] - middle[axis]).powi(2)).sum() };
     let nearest = *members.iter().min_by(|&&a, &&b| distance(a).total_cmp(&distance(b))).expect("groups have lights");
-    let intensity = members.iter().map(|&member| lights[member].intensity).sum::<Vec3>();
-    (nearest, Light { intensity, ..lights[nearest].clone() })
+    let all = members.iter().map(|&member| power(&lights[member])).sum::<Vec3>();
+    (nearest, Light { intensity: all / emitted(&lights[nearest]), ..lights[nearest].clone() })
+}
+
+/// All the light of a light, over π.
+fn power(light: &Light) -> Vec3 {
+    emitted(light) * light.intensity
+}
+
+/// A ball shines to all sides: four times as much as a surface of the same intensity along its normal.
+fn emitted(light: &Light) -> f32 {
+    if light.surface.is_some() { 1.0 } else { 4.0 }
 }

@@ -4,13 +4,15 @@
 //! lights, whatever its size, its strength or its texture.
 //!
 //! 1. The triangles of a material that share corners form a lamp ([`connected`]), also those of instances, where they are placed.
-//! 2. Its triangles that face a similar way form a patch ([`patches`]): an emitter in one plane.
-//! 3. A large patch, or one that a texture makes uneven, is cut into pieces ([`pieces`]). Each has the mean radiance of its texels ([`glow`]).
-//! 4. A patch or piece becomes a rectangle, or a disc, of its area. A rectangle and a disc become just that.
-//! 5. If there are very many, those that are near each other and face the same way become one ([`merged`]). No light is lost by that.
+//! 2. A lamp that is nearly a ball becomes a ball ([`balls`]).
+//! 3. Else its triangles that face a similar way form a patch ([`patches`]): an emitter in one plane.
+//! 4. A large patch, or one that a texture makes uneven, is cut into pieces ([`pieces`]). Each has the mean radiance of its texels ([`glow`]).
+//! 5. A patch or piece becomes a rectangle, or a disc, of its area. A rectangle and a disc become just that.
+//! 6. If there are very many, those that are near each other and face the same way become one ([`merged`]). No light is lost by that.
 //!
 //! What surrounds the scene, such as a dome with an image of the sky, has no lights: every gather ray finds it.
 
+mod balls;
 mod connected;
 mod glow;
 mod merged;
@@ -33,6 +35,9 @@ const AROUND: f64 = 0.5;
 /// and covers this share of half of the view from its middle: more than a plane can.
 const COVERED: f64 = 0.95;
 
+/// A lamp, and the ball that it is, if it is one.
+type Found = (Lamp, Option<Light>);
+
 /// Makes lights for the lamps of a geometry, among the materials that are [marked](crate::Material::lamp). The mark of those that
 /// emit nothing is taken away. Triangles of a lamp that surrounds the scene get a material without mark if others have theirs.
 pub fn lamps(geometry: &mut Geometry) -> Vec<Light> {
@@ -51,13 +56,30 @@ pub fn lamps(geometry: &mut Geometry) -> Vec<Light> {
         *lamps = others;
         leave_to_rays(geometry, *material, &around, lamps.is_empty());
     }
-    let count =
-        |alike: f64| -> usize { found.iter().flat_map(|(_, lamps)| lamps).map(|lamp| lamp.patches(alike).len()).sum() };
+    let found: Vec<(u32, Vec<Found>)> = found
+        .into_iter()
+        .map(|(number, lamps)| {
+            let glow = Glow::of(geometry, number);
+            let ball = |lamp: Lamp| {
+                let ball = lamp.ball(&glow, geometry, &scene, number);
+                (lamp, ball)
+            };
+            (number, lamps.into_iter().map(ball).collect())
+        })
+        .collect();
+    let count = |alike: f64| -> usize {
+        let count = |(lamp, ball): &Found| if ball.is_some() { 1 } else { lamp.patches(alike).len() };
+        found.iter().flat_map(|(_, lamps)| lamps).map(count).sum()
+    };
     let alike = SAME_PATCH.into_iter().find(|&alike| count(alike) <= MANY).unwrap_or(SAME_PATCH[4]);
     let mut lights = Vec::new();
     for (number, lamps) in found {
         let glow = Glow::of(geometry, number);
-        let own: Vec<Light> = lamps.iter().flat_map(|lamp| lamp.lights(&glow, geometry, &scene, alike)).collect();
+        let lights_of = |(lamp, ball): Found| match ball {
+            Some(ball) => vec![ball],
+            None => lamp.lights(&glow, geometry, &scene, alike),
+        };
+        let own: Vec<Light> = lamps.into_iter().flat_map(lights_of).collect();
         let is_finite = own.iter().all(|light| light.intensity.is_finite());
         geometry.materials[number as usize].lamp &= is_finite;
         if is_finite {
@@ -92,7 +114,7 @@ fn leave_to_rays(geometry: &mut Geometry, material: u32, lamps: &[Lamp], are_all
 fn is_usable(light: &Light) -> bool {
     let has_size = match light.kind {
         LightKind::Rectangle { half_u, half_v, .. } => half_u.cross(half_v).length_squared() > 0.0,
-        LightKind::Disk { radius, .. } => radius > 0.0,
+        LightKind::Disk { radius, .. } | LightKind::Sphere { radius, .. } => radius > 0.0,
         _ => false,
     };
     has_size && light.intensity != Vec3::ZERO

@@ -22,7 +22,7 @@ const FILLED: f64 = 0.98;
 /// The share of its square that a disc fills, and how much that may differ, also between its widths.
 const DISC: (f64, f64) = (std::f64::consts::FRAC_PI_4, 0.06);
 /// How far lights lie in front of their surface, relative to its size and to the scene's.
-const RAISED: [f64; 2] = [1e-3, 1e-5];
+pub(super) const RAISED: [f64; 2] = [1e-3, 1e-5];
 /// What lies less in front of a lamp than this share of the scene's diagonal is beside it, as the ceiling is in which a lamp is set.
 const BESIDE: f64 = 1e-4;
 

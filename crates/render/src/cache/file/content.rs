@@ -91,7 +91,7 @@ fn write_column(output: &mut impl Write, before: Option<&StoredColumn>, column: 
     }
 }
 
-fn write_seen(output: &mut impl Write, Seen { kind, sampling }: &Seen) -> io::Result<()> {
+fn write_seen(output: &mut impl Write, Seen { kind, glows, sampling }: &Seen) -> io::Result<()> {
     let (name, numbers): (u8, Vec<f32>) = match *kind {
         LightKind::Point { position, spread } => (0, [&position.to_array()[..], &[spread]].concat()),
         LightKind::Directional { direction, angle } => (1, [&direction.to_array()[..], &[angle]].concat()),
@@ -100,7 +100,9 @@ fn write_seen(output: &mut impl Write, Seen { kind, sampling }: &Seen) -> io::Re
             // Without a radius as before there were any.
             if radius > 0.0 { (6, [&point[..], &[radius]].concat()) } else { (2, point) }
         }
-        LightKind::Sphere { position, radius } => (3, [&position.to_array()[..], &[radius]].concat()),
+        LightKind::Sphere { position, radius } => {
+            (if *glows { 7 } else { 3 }, [&position.to_array()[..], &[radius]].concat())
+        }
         LightKind::Disk { position, normal, radius } => {
             (4, [&position.to_array()[..], &normal.to_array(), &[radius]].concat())
         }
@@ -235,7 +237,7 @@ impl<R: Read> Input<R> {
                 outer: self.float()?,
                 radius: if name == 6 { self.float()? } else { 0.0 },
             },
-            3 => LightKind::Sphere { position: self.vector()?, radius: self.float()? },
+            3 | 7 => LightKind::Sphere { position: self.vector()?, radius: self.float()? },
             4 => LightKind::Disk { position: self.vector()?, normal: self.vector()?, radius: self.float()? },
             5 => LightKind::Rectangle { position: self.vector()?, half_u: self.vector()?, half_v: self.vector()? },
             _ => return Err(MeshFault::Damaged("it has a light of no kind")),
@@ -244,6 +246,6 @@ impl<R: Read> Input<R> {
         if samples > u32::from(u16::MAX) {
             return Err(MeshFault::Damaged("a light has too many samples"));
         }
-        Ok(Seen { kind, sampling: (samples > 0).then_some((samples, seed)) })
+        Ok(Seen { kind, glows: name == 7, sampling: (samples > 0).then_some((samples, seed)) })
     }
 }

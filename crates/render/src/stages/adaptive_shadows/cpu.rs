@@ -12,10 +12,9 @@ use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shadow::rows::Rows;
 use crate::shadow::sight::Emitter;
-use crate::shadow::{Aim, SEGMENTS, hidden};
+use crate::shadow::{Aim, SEGMENTS, hidden, shadow_segment};
 use crate::stages::primary_rays::cpu::{camera_rays, closest_hits};
 use crate::stages::shadow_rays::cpu::{Batch, shadow_rays};
-use crate::surface::long_segment;
 use crate::view::View;
 
 /// Maximum number of rays per task.
@@ -145,7 +144,7 @@ impl<'a> Band<'a> {
             let Some(known) = extent.at_horizon(point.normal) else { continue };
             let target = extent.target(point.origin, &self.places, place_of(wave.rays.window.place(pixel)));
             if point.normal.dot(target - point.origin) > 0.0 {
-                segments.push(long_segment(point.origin, target));
+                segments.push(shadow_segment(emitter.light().0, point.origin, target));
                 owners.push((pixel, known));
             } else {
                 answers[self.place(pixel)].store(ANSWER_STRADDLES as u8, Ordering::Relaxed);

@@ -55,7 +55,7 @@ DEVICE unsigned ask_lights(const AdaptiveShadows &args, const Structure &structu
         const bool asks = has && first_ray(args, light, shape, ray, point, target, known);
         const bool casts = asks && dot(point.normal, target - point.origin) > 0.0f;
         cast += casts;
-        const bool lit = casts && !hidden(structure, shadows.tally, point.origin, target);
+        const bool lit = casts && !hidden(structure, shadows.tally, light, point.origin, target);
         if (shape != SHAPE_POINT)
             *answer = (unsigned char)(!asks ? 0 : !casts ? ANSWER_STRADDLES : known | (lit ? ANSWER_LIT : ANSWER_DARK));
         else if (asks)

@@ -77,7 +77,7 @@ DEVICE void each_target(const Filters &args, const SurfacePoint &point, unsigned
     const Shadows &shadows = args.shadows;
     const Light &light = shadows.scene.lights[shadows.first_light];
     if (shape == SHAPE_POINT) {
-        take(light_center(light, point.origin, scene_reach(shadows.scene, point.origin)));
+        take(before_body(light, point.origin, light_center(light, point.origin, scene_reach(shadows.scene, point.origin))));
         return;
     }
     const SampleRows &set = shadows.sets[shape];
@@ -110,7 +110,7 @@ DEVICE Followed follow(const Filters &args, const Structure &blockers, const Sur
         sums.all_count += 1.0f;
         if (left != splat(1.0f)) {
             ++cast;
-            if (hidden(blockers, args.shadows.tally, point.origin, target))
+            if (occluded(blockers, args.shadows.tally, long_segment(point.origin, target)))
                 return;
         }
         sums.lost = sums.lost + (splat(1.0f) - left);

@@ -10,8 +10,7 @@ use crate::counters::Tally;
 use crate::data::lit::{Lit, LitBy};
 use crate::data::wave::HostWave;
 use crate::light_mesh::{LightMesh, UsedPoints, bits};
-use crate::shadow::{Aim, Targets, hidden};
-use crate::surface::long_segment;
+use crate::shadow::{Aim, Targets, hidden, shadow_segment};
 
 /// Number of bricks per task.
 const RUN: usize = 64;
@@ -96,7 +95,7 @@ impl LongTests<'_> {
         for (key, from) in self.positions(bricks) {
             let reach = wave.scene.geometry.reach(from);
             let targets = Targets::new(&aim, (index, light), from, reach, key);
-            segments.extend((0..samples).map(|sample| long_segment(from, targets.get(sample))));
+            segments.extend((0..samples).map(|sample| shadow_segment(light, from, targets.get(sample))));
         }
         Tally::add(&wave.job.tally.long_tests, segments.len() as u64);
         wave.job.piece(segments.len(), || hidden(wave, &segments))

@@ -17,7 +17,7 @@ DEVICE unsigned rays_that_arrive(const LongTests &args, const Structure &structu
     const Targets targets = targets_of(args.scene, args.sampling, args.light, from, lattice_packed(args.mesh, index));
     unsigned seen = 0;
     for (unsigned sample = args.first_sample; sample < args.first_sample + args.sample_count; ++sample)
-        seen += !hidden(structure, args.tally, from, target(targets, sample));
+        seen += !hidden(structure, args.tally, targets.light, from, target(targets, sample));
     return seen;
 }
 

@@ -13,6 +13,8 @@ struct Shaft {
     Vec3 emitter, emitter_half;
     // No sample is farther from the middle.
     float radius;
+    // The square of the radius of an emissive ball about that middle: what lies in it hides nothing.
+    float body;
     // Sums over the axes: the points' farthest, and the samples'. Products of half diagonals.
     float reach, far, diagonals;
 };
@@ -25,13 +27,14 @@ DEVICE Vec3 grown_half(const Bounds &bounds) {
 // The length of a vector, rounded up.
 DEVICE float length_bound(const Vec3 &v) { return GROWN * rough_root(fused_dot(v, v)); }
 
-DEVICE Shaft shaft_of(const Bounds &origins, const Bounds &emitter, float radius) {
+DEVICE Shaft shaft_of(const Bounds &origins, const Bounds &emitter, float radius, float body) {
     Shaft shaft;
     shaft.middle = 0.5f * (origins.low + origins.high);
     shaft.half = grown_half(origins);
     shaft.emitter = 0.5f * (emitter.low + emitter.high) - shaft.middle;
     shaft.emitter_half = grown_half(emitter);
     shaft.radius = GROWN * radius;
+    shaft.body = body * body;
     shaft.reach = element_sum(shaft.half);
     shaft.far = element_sum(abs(shaft.emitter)) + element_sum(shaft.emitter_half);
     shaft.diagonals = length_bound(shaft.half) * length_bound(shaft.emitter_half);
@@ -88,6 +91,11 @@ DEVICE Choice choose(const Shaft &shaft, const Occluding &triangle) {
     const bool samples_above = samples > samples_room, samples_below = samples < -samples_room;
     if ((points_above && samples_above) || (points_below && samples_below))
         return DROPPED;
+    if (shaft.body > 0.0f) {
+        const Vec3 a = corners[0] - shaft.emitter, b = corners[1] - shaft.emitter, c = corners[2] - shaft.emitter;
+        if (fmaxf(fmaxf(fused_dot(a, a), fused_dot(b, b)), fused_dot(c, c)) < shaft.body)
+            return DROPPED;
+    }
 
     // Its edges.
     unsigned inside = 0, outside = 0;

@@ -44,6 +44,8 @@ pub(super) struct Shaft {
     emitter_half: Vec3,
     /// No sample is farther from the middle.
     radius: f32,
+    /// The square of the radius of an emissive ball about that middle: what lies in it hides nothing.
+    body: f32,
 }
 
 /// What becomes of eight triangles, a bit each.
@@ -56,7 +58,7 @@ pub(super) struct Chosen {
 }
 
 impl Shaft {
-    pub(super) fn new(origins: &Bounds, (emitter, radius): (&Bounds, f32)) -> Shaft {
+    pub(super) fn new(origins: &Bounds, emitter: &Bounds, (radius, body): (f32, f32)) -> Shaft {
         let middle = origins.center();
         let grown = |bounds: &Bounds| 0.5 * GROWN * bounds.extent() + 4.0 * UNIT_ROUNDOFF * bounds.center().abs();
         Shaft {
@@ -65,6 +67,7 @@ impl Shaft {
             emitter: emitter.center() - middle,
             emitter_half: grown(emitter),
             radius: GROWN * radius,
+            body: body * body,
         }
     }
 
@@ -91,6 +94,13 @@ impl Shaft {
         let room = self.extent_of_samples(plane, emitter_half) + rounding * (away[0] + far);
         let (samples_above, samples_below) = (side.simd_gt(room), side.simd_lt(-room));
         let mut dropped = (points_above & samples_above) | (points_below & samples_below);
+        if self.body > 0.0 {
+            let within = |corner: Axes<S>| {
+                let from = difference(corner, emitter);
+                dot(from, from).simd_lt(self.body)
+            };
+            dropped |= within(a) & within(b) & within(c);
+        }
 
         // Its edges.
         let never = mask32x8::splat(simd, false);

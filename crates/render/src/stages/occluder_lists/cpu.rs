@@ -233,9 +233,10 @@ impl<'a, S: Simd> Item<'a, S> {
         let geometry = &self.wave.scene.geometry;
         let (origins, planes) = (self.around.origins, self.around.planes);
         let region = view.emitter.region(geometry, &origins).above(planes);
-        let emitter = (&view.emitter.bounds(geometry, &origins), view.emitter.radius());
+        let emitter = view.emitter.bounds(geometry, &origins);
+        let radii = (view.emitter.radius(), view.emitter.body());
         for (number, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.lanes != 0) {
-            group.bound(&self.points[number * LANES..], emitter);
+            group.bound(&self.points[number * LANES..], &emitter, radii);
         }
         let simd = self.simd;
         let mut progress = Progress { before, found: 0, tested: 0, check: FIRST_CHECK * GROUPS as u32 };

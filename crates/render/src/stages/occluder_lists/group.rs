@@ -138,9 +138,9 @@ impl<S: Simd> Group<S> {
 
     /// Prepares for the choice among candidates.
     #[inline(always)]
-    pub(super) fn bound(&mut self, points: &[SurfacePoint], emitter: (&Bounds, f32)) {
+    pub(super) fn bound(&mut self, points: &[SurfacePoint], emitter: &Bounds, radii: (f32, f32)) {
         let living = points.iter().take(LANES).enumerate().filter(|(lane, _)| self.lanes >> lane & 1 != 0);
-        self.shaft = Shaft::new(&Bounds::around(living.map(|(_, point)| point.origin)), emitter);
+        self.shaft = Shaft::new(&Bounds::around(living.map(|(_, point)| point.origin)), emitter, radii);
     }
 
     /// Clears what candidates hide, until nothing is seen. Returns how many were tested.

@@ -272,7 +272,7 @@ DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure
     const auto region = region_above(shadow_region(origins, bounds, memory.faces), planes, 0.0f);
     const bool ball = emitter.kind == Light::POINT || emitter.kind == Light::SPHERE;
     if (lane_of_thread() == 0)
-        *memory.shaft = shaft_of(origins, bounds, ball ? emitter.radius : INFINITE);
+        *memory.shaft = shaft_of(origins, bounds, ball ? ball_extent(emitter) : INFINITE, emitter.body);
     __syncwarp();
     auto search = begin_search_at(structure, region, memory.search, memory.starts, start_count);
     unsigned found = 0, spent = 0, check = FIRST_CHECK;

@@ -24,12 +24,13 @@ template <class Structure>
 DEVICE unsigned trace_hard(const ShadowRays &args, const Structure &structure, unsigned ray, const SurfacePoint &flat) {
     unsigned cast = 0;
     for (unsigned light = args.first_light; light < args.first_light + args.light_count; ++light) {
-        const SurfacePoint point = shadow_point_of(args.scene, args.rays, args.hits, ray, args.scene.lights[light], flat);
-        const Vec3 middle = light_center(args.scene.lights[light], point.origin, scene_reach(args.scene, point.origin));
+        const Light &emitter = args.scene.lights[light];
+        const SurfacePoint point = shadow_point_of(args.scene, args.rays, args.hits, ray, emitter, flat);
+        const Vec3 middle = light_center(emitter, point.origin, scene_reach(args.scene, point.origin));
         bool lit = false;
         if (dot(point.normal, middle - point.origin) > 0.0f) {
             ++cast;
-            lit = !hidden(structure, args.tally, point.origin, middle);
+            lit = !hidden(structure, args.tally, emitter, point.origin, middle);
         }
         share_of(args, light, ray) = lit ? 1.0f : 0.0f;
     }

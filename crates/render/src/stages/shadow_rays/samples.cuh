@@ -28,7 +28,7 @@ DEVICE unsigned trace_samples(const Shadows &args, const Structure &structure, c
     if (shape == SHAPE_POINT) {
         const Vec3 middle = light_center(light, point.origin, scene_reach(args.scene, point.origin));
         cast = dot(point.normal, middle - point.origin) > 0.0f;
-        return cast && !hidden(structure, args.tally, point.origin, middle);
+        return cast && !hidden(structure, args.tally, light, point.origin, middle);
     }
     const SampleRows &set = args.sets[shape];
     const Sight sight = sight_of(args.scene, args.sampling, index, shape, set.lines, point, ray_key(args.rays, ray));

@@ -88,19 +88,19 @@ fn a_disc_becomes_that_disc() {
 
 #[test]
 fn small_lamps_shine_to_all_sides_beside_large_ones() {
-    // Three balls of a hundred triangles each, of which one is small: with fine patches there would be more lights than may be.
-    let ball = |middle: Vec3, radius: f32| {
+    // Three eggs of a hundred triangles each, of which one is small: with fine patches there would be more lights than may be.
+    let egg = |middle: Vec3, radius: f32| {
         let at = |ring: i32, column: i32| {
             let (up, around) = (ring as f32 * PI / 6.0, column as f32 * PI / 6.0);
-            (middle + radius * Vec3::new(up.sin() * around.cos(), up.cos(), up.sin() * around.sin())).to_array()
+            (middle + radius * Vec3::new(up.sin() * around.cos(), 0.8 * up.cos(), up.sin() * around.sin())).to_array()
         };
         let quads = (0..6).flat_map(move |ring| (0..12).map(move |column| (ring, column)));
         quads.flat_map(move |(r, c)| quad([at(r, c), at(r, c + 1), at(r + 1, c + 1), at(r + 1, c)])).collect::<Vec<_>>()
     };
     let small = Vec3::new(3.0, 3.0, 0.0);
-    let mut triangles = ball(Vec3::ZERO, 1.0);
-    triangles.extend(ball(Vec3::new(-3.0, -3.0, 0.0), 1.0));
-    triangles.extend(ball(small, 0.2));
+    let mut triangles = egg(Vec3::ZERO, 1.0);
+    triangles.extend(egg(Vec3::new(-3.0, -3.0, 0.0), 1.0));
+    triangles.extend(egg(small, 0.2));
     let lights = lamps(&mut room(&triangles));
     assert!(lights.len() <= LIGHTS);
     let of_small = |light: &&Light| light.position().unwrap().distance(small) < 0.3;
@@ -108,6 +108,82 @@ fn small_lamps_shine_to_all_sides_beside_large_ones() {
     for side in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
         assert!(normals.iter().any(|normal| normal.dot(side) > 0.5), "{side}: {normals:?}");
     }
+}
+
+/// A ball with faces outwards, of `columns` around and half as many rings.
+fn ball(center: Vec3, radius: f32, columns: u32) -> Vec<[[f32; 3]; 3]> {
+    let rings = columns / 2;
+    let at = |ring: u32, column: u32| {
+        let (down, around) = (PI * ring as f32 / rings as f32, 2.0 * PI * (column % columns) as f32 / columns as f32);
+        let place = Vec3::new(down.sin() * around.cos(), down.cos(), down.sin() * around.sin());
+        (center + radius * place).to_array()
+    };
+    let side =
+        |(ring, column)| quad([at(ring, column), at(ring, column + 1), at(ring + 1, column + 1), at(ring + 1, column)]);
+    (0..rings).flat_map(|ring| (0..columns).map(move |column| (ring, column))).flat_map(side).collect()
+}
+
+fn area(triangles: &[[[f32; 3]; 3]]) -> f32 {
+    let of = |corners: &[[f32; 3]; 3]| {
+        let [a, b, c] = corners.map(Vec3::from_array);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    triangles.iter().map(of).sum()
+}
+
+#[test]
+fn a_ball_becomes_a_ball_of_its_power() {
+    let center = Vec3::new(1.0, 2.0, -0.5);
+    for columns in [8, 12, 32] {
+        for one_sided in [false, true] {
+            let triangles = ball(center, 0.3, columns);
+            let mut geometry = room(&triangles);
+            geometry.materials[1].one_sided = one_sided;
+            let [light] = lamps(&mut geometry).try_into().unwrap();
+            let LightKind::Sphere { position, radius } = light.kind else { panic!("{light:?}") };
+            assert!((position - center).length() < 1e-4 && (0.3..0.3015).contains(&radius), "{light:?}");
+            assert!(light.lamp && light.surface.is_none() && light.falloff == Falloff::InverseSquare);
+            // All sides together shine as π L A; a ball of intensity I as 4 π I.
+            let expected = 0.25 * area(&triangles) * Vec3::new(2.0, 1.0, 0.5);
+            assert!((light.intensity - expected).length() < 1e-4 * expected.length(), "{light:?}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_ball_is_no_ball() {
+    let is_ball = |triangles: &[[[f32; 3]; 3]], one_sided: bool| {
+        let mut geometry = room(triangles);
+        geometry.materials[1].one_sided = one_sided;
+        lamps(&mut geometry).iter().any(|light| matches!(light.kind, LightKind::Sphere { .. }))
+    };
+    let round = ball(Vec3::ZERO, 0.5, 24);
+    assert!(is_ball(&round, true));
+    // Open, inside out, flattened, and a box, whose corners lie on a sphere, too.
+    assert!(!is_ball(&round[48..], false));
+    let inward: Vec<_> = round.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    assert!(is_ball(&inward, false) && !is_ball(&inward, true));
+    let flat: Vec<_> = round.iter().map(|corners| corners.map(|[x, y, z]| [x, 0.9 * y, z])).collect();
+    assert!(!is_ball(&flat, false));
+    assert!(!is_ball(&cuboid(Vec3::splat(-0.5), Vec3::splat(0.5)), false));
+}
+
+#[test]
+fn a_chain_of_balls_is_as_many_lights() {
+    let centers = (0..14).map(|index| Vec3::new(0.6 * index as f32 - 4.0, 3.0, 0.0));
+    let chain: Vec<_> = centers.flat_map(|center| ball(center, 0.1, 16)).collect();
+    assert_eq!(lamps(&mut room(&chain)).len(), 14);
+    // Those of very many that become one shine as all of them, also together with surfaces.
+    let places = (0..300).map(|index| Vec3::new(0.3 * (index % 30) as f32 - 4.5, 3.0, 0.3 * (index / 30) as f32));
+    let balls: Vec<_> = places.flat_map(|center| ball(center, 0.1, 8)).collect();
+    let panel = quad([[-0.5, 4.0, -0.5], [0.5, 4.0, -0.5], [0.5, 4.0, 0.5], [-0.5, 4.0, 0.5]]);
+    let all = [balls, panel.to_vec()].concat();
+    let lights = lamps(&mut room(&all));
+    assert_eq!(lights.len(), LIGHTS);
+    let power = |light: &Light| if light.surface.is_some() { light.intensity.x } else { 4.0 * light.intensity.x };
+    // Open surfaces shine to both sides.
+    let expected = 2.0 * (area(&all) + 1.0);
+    assert!((lights.iter().map(power).sum::<f32>() / expected - 1.0).abs() < 1e-3);
 }
 
 #[test]

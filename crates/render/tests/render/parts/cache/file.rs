@@ -22,7 +22,7 @@ fn scene(at: f64) -> PreparedScene {
     PreparedScene::new(&pile(DVec3::splat(at), &[LAMP]), &Acceleration::Bvh, &Unobserved).unwrap()
 }
 
-/// One light of each kind, with and without samples; bricks near and far from each other.
+/// One light of each kind, with and without samples, and a glowing ball; bricks near and far from each other.
 fn section(scene: &PreparedScene) -> Section {
     let at = Vec3::new(0.25, -3.0, 1e-7);
     let kinds = [
@@ -33,6 +33,7 @@ fn section(scene: &PreparedScene) -> Section {
         LightKind::Spot { position: at, direction: Vec3::X, inner: 0.1, outer: 0.2, radius: 0.5 },
         LightKind::Disk { position: at, normal: Vec3::Z, radius: 2.0 },
         LightKind::Rectangle { position: at, half_u: Vec3::X, half_v: Vec3::Y },
+        LAMP,
     ];
     let bricks = vec![0, 1, 5, 1 << 20, (1 << 57) - 1];
     let known = [1, u64::MAX, 0b1010, 0, 1 << 63];
@@ -44,7 +45,7 @@ fn section(scene: &PreparedScene) -> Section {
             Some((samples, _)) => StoredAnswers::Shares((0..68).map(|share| (share % (samples + 1)) as u16).collect()),
         };
         let known = if index == 1 { other } else { known };
-        StoredColumn { seen: Seen { kind, sampling }, known: known.into(), answers }
+        StoredColumn { seen: Seen { kind, glows: index == 7, sampling }, known: known.into(), answers }
     };
     let columns = kinds.into_iter().enumerate().map(column).collect();
     let places = Places { anchor: Vec3::new(0.1, 0.2, 0.3), step: 0.25, number: UVec3::new(7, 2_097_151, 0) };

@@ -9,7 +9,10 @@ const BRICKS: usize = 100;
 
 fn lights() -> Vec<Seen> {
     let kind = |x: f32| LightKind::Sphere { position: Vec3::new(x, 4.0, 0.0), radius: 0.5 };
-    vec![Seen { kind: kind(0.0), sampling: None }, Seen { kind: kind(1.0), sampling: Some((9, 0)) }]
+    vec![
+        Seen { kind: kind(0.0), glows: false, sampling: None },
+        Seen { kind: kind(1.0), glows: false, sampling: Some((9, 0)) },
+    ]
 }
 
 fn bits_of(brick: BrickKey) -> u64 {
