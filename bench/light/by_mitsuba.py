@@ -4,6 +4,8 @@ import time
 
 import numpy as np
 
+import facets
+
 FAR = 1e4
 """The distance of the sun's disc, in diagonals of the scene."""
 FINER = 8
@@ -24,6 +26,8 @@ class Mitsuba:
         self.version = f"{mitsuba.__version__}, {mitsuba.variant()}"
         if compiled and not on_gpu:
             drjit.set_thread_count(options.threads)
+        if any(part.material.facets is not None for part in lightmesh.model.parts):
+            facets.register(mitsuba, drjit)
         self.compiled, self.scene = compiled, mitsuba.load_dict(self.describe(lightmesh))
         # Only this one sees lights through what is cut out.
         kind = "volpath" if any(part.material.mask is not None for part in lightmesh.model.parts) else "path"
@@ -106,6 +110,8 @@ class Mitsuba:
         elif part.colors is not None:
             color = {"type": "mesh_attribute", "name": "vertex_color"}
         surface = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
+        if material.facets is not None:
+            surface = facets.described(self.mitsuba, material)
         if material.mask is None:
             return surface
         bits = self.mitsuba.Bitmap((finer(material.mask) >= material.cutoff).astype(np.float32)[..., None])

@@ -12,8 +12,18 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
 @dataclass
+class Facets:
+    """What makes a surface rough: f0 of its layer, how it reflects at grazing incidence, and how much of a metal it is."""
+
+    layer: np.ndarray
+    grazing: float
+    roughness: float
+    metallic: float
+
+
+@dataclass
 class Material:
-    """A diffuse surface: colours are linear, images as they are encoded, with their alpha."""
+    """A diffuse surface, or one with facets: colours are linear, images as they are encoded, with their alpha."""
 
     color: np.ndarray
     emission: np.ndarray
@@ -22,6 +32,7 @@ class Material:
     """An image that `emission` is multiplied by."""
     mask: np.ndarray | None = None
     cutoff: float = 0.5
+    facets: Facets | None = None
 
 
 @dataclass
@@ -46,16 +57,20 @@ class Model:
         return lower, np.max([part.positions.max(axis=0) for part in self.parts], axis=0)
 
 
-def make_diffuse(source, target):
-    """Writes the GLB file `source` without lights, highlights, mirrors, and triangles that let light through, to `target`."""
+def make_diffuse(source, target, keep_facets=False):
+    """Writes the GLB file `source` without lights, highlights, mirrors, and triangles that let light through, to `target`. Surfaces with facets stay
+    what they are if they are to be kept."""
     gltf, binary = split(source.read_bytes())
     through = set()
     for index, material in enumerate(gltf["materials"]):
         own = material["extras"]["lightmesh"]
-        for key in ("ks", "ks_tinted"):
-            own[key] = [0, 0, 0]
         own["ka"] = own["kd"]
-        material["pbrMetallicRoughness"]["roughnessFactor"] = 1.0
+        if not keep_facets:
+            own.pop("facets", None)
+        if "facets" not in own:
+            for key in ("ks", "ks_tinted"):
+                own[key] = [0, 0, 0]
+            material["pbrMetallicRoughness"]["roughnessFactor"] = 1.0
         if any(own["emission"]):
             # The others' surfaces shine to their front alone.
             material["doubleSided"] = False
@@ -130,6 +145,9 @@ def array(gltf, binary, index):
 def material(gltf, binary, entry):
     own, pbr = entry["extras"]["lightmesh"], entry["pbrMetallicRoughness"]
     made = Material(np.array(own["kd"], np.float32), np.array(own["emission"], np.float32))
+    if "facets" in own:
+        shares = (float(own["facets"][name]) for name in ("grazing", "roughness", "metallic"))
+        made.facets = Facets(np.array(own["ks"], np.float32), *shares)
     if "baseColorTexture" in pbr:
         made.image = image(gltf, binary, pbr["baseColorTexture"]["index"])
     if "emissiveTexture" in entry:

@@ -78,6 +78,7 @@ def common(parser):
 def render(room, program, quality, options):
     """Seconds of the processor and linear colours."""
     words = ["--quality", quality, "--ambient-light", options.ambient_light, *options.words.split()]
+    words += ["--bounces", str(room.bounces)] if room.bounces else []
     return program.image(truth.file(room), options.size, [*words, *surroundings(room, program.folder)])
 
 

@@ -48,6 +48,8 @@ class Room:
     """Most of what is seen sees no light: paths from the lights to the camera need a tenth of the samples of paths from the camera."""
     outdoors: bool = False
     """Its mark is that of open air."""
+    bounces: int = 0
+    """Mirror reflections that are followed."""
     reflectance: float | None = None
     """The largest of all surfaces: none may be brighter, if the sky is all the light there is."""
 
@@ -61,6 +63,8 @@ ROOMS = [
     Room("tube", 0.0, sky=True, outdoors=True, reflectance=0.7),
     Room("tables", -0.5, sky=True, outdoors=True, reflectance=0.7),
     Room("white-on-white", -0.5, sky=True, outdoors=True, reflectance=0.75),
+    Room("rough-wood", -0.5, sky=True, outdoors=True, bounces=2),
+    Room("rough-metal", -0.5, sky=True, outdoors=True, bounces=2),
     Room("soft-boxes", -0.5, soft_boxes=True, outdoors=True),
     Room("glowing-ceiling", 0.0),
     Room("screen", 3.0),

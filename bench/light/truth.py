@@ -57,7 +57,7 @@ def given(room, lightmesh, folder):
     """The triangles are those of `lightmesh export`."""
     whole, diffuse = folder / "whole.glb", folder / "diffuse.glb"
     lightmesh("export", file(room), "-o", whole)
-    model.make_diffuse(whole, diffuse)
+    model.make_diffuse(whole, diffuse, keep_facets=True)
     view = tomllib.loads(file(room).read_text())["camera"]
     place = np.array(view["position"], float)
     along = np.array(view["target"], float) - place

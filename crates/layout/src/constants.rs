@@ -61,6 +61,8 @@ constants_of_records! {
         SURFACE = 2;
         /// and those of the camera.
         CAMERA = 4;
+        /// Mirror rays see it in the image of what surrounds the scene, however rough the mirror is.
+        PAINTED = 8;
     }
     Texture {
         /// The same again.
@@ -143,6 +145,8 @@ constants! {
     PI: f32 = std::f32::consts::PI;
     /// 1 / π.
     FRAC_1_PI: f32 = std::f32::consts::FRAC_1_PI;
+    /// π/2.
+    FRAC_PI_2: f32 = std::f32::consts::FRAC_PI_2;
     /// The largest relative error of one operation in single precision, 2^-24.
     UNIT_ROUNDOFF: f32 = 0.5 * f32::EPSILON;
 
@@ -227,11 +231,29 @@ constants! {
     /// A light is in front of a surface as far away, by rounding and by a hair: lamps lie in ceilings.
     SAME_DISTANCE: f32 = 1.0 + 1.0 / 16384.0;
     /// Up to this roughness, mirror rays show all that facets reflect,
-    MIRROR_FADES: f32 = 0.13;
+    MIRROR_FADES: f32 = 0.5;
     /// and from here on nothing.
-    MIRROR_ENDS: f32 = 0.5;
-    /// The angle of the cone that a mirror ray of facets stands for, in widths of their lobes: most of what they reflect comes from there.
+    MIRROR_ENDS: f32 = 0.6;
+    /// Up to this roughness, they show all of lights, too,
+    LIGHTS_FADE: f32 = 0.05;
+    /// and from here on nothing: highlights do, without noise.
+    LIGHTS_END: f32 = 0.17;
+    /// That is counted in so many parts, which fit into the bits of a ray,
+    PARTS_OF_FADE: u32 = 15;
+    /// above the surfaces that it went through.
+    FADE_SHIFT: u32 = 28;
+    /// The angle of the cone that all mirror rays of facets stand for, in widths of their lobes: most of what they reflect comes from there.
     WIDTH_OF_LOBE: f32 = 3.0;
+    /// A mirror ray of facets that shows all of a pixel is as many as that, in different directions, if the lobe is wide,
+    MOST_DIRECTIONS: u32 = 8;
+    /// as from this width on, the square of the roughness.
+    WIDE_LOBE: f32 = 0.01;
+    /// Cones of mirror rays are as narrow as if a pixel had that many at most.
+    MOST_CONES: f32 = 64.0;
+    /// The bit from which on a ray's number among them is in a list, above its sample.
+    DIRECTION_SHIFT: u32 = 17;
+    /// Stands for a light in the random pattern of the directions of a pixel's mirror rays.
+    LOBE_PATTERN: u32 = 0x7fff_fffe;
     /// Half of the part of a light that one of its points stands for, as a share of its size.
     PART_OF_LIGHT: f32 = 0.35;
     /// Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
@@ -275,6 +297,8 @@ constants! {
     OPAQUE: f32 = 255.0;
     /// The bit from which on the number of surfaces that a ray went through is in a list, above its sample.
     THROUGHS_SHIFT: u32 = 20;
+    /// These bits, shifted down.
+    THROUGHS_MASK: u32 = 0xff;
     /// 1/ln 2.
     LOG2_E: f32 = std::f32::consts::LOG2_E;
     /// ln 2 in two parts, the first of few digits.

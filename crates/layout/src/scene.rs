@@ -155,7 +155,9 @@ records! {
         gain: Vec3,
         /// At a surface point with facets: the cosine between the normal and the direction to the eye.
         cosine: f32,
-        /// At a surface point with facets: the share of reflections that mirror rays do not show.
+        /// At a surface point with facets: the share of reflections that mirror rays show.
+        shown: f32,
+        /// At a surface point with facets: the share of the reflections of lights that they do not show.
         unmirrored: f32,
         /// At a surface point with facets: how opaque it is.
         opacity: f32,

@@ -338,7 +338,11 @@ records! {
         counts: Out<u32>,
         /// The shares of thin rays that go on from each ray; null if none are thinned.
         thin: Out<u32>,
-        /// The rays that go on, in the order of the rays: of each first the one that goes through, then the one that is mirrored.
+        /// How many rays go on from each ray.
+        per_ray: Out<u32>,
+        /// Random pattern.
+        seed: u64,
+        /// The rays that go on, in the order of the rays: of each first the one that goes through, then those that are mirrored.
         onward: Out<ListedRay>,
         /// Their cones; null if textures are not filtered.
         cones: Out<Cone>,

@@ -10,6 +10,13 @@ use crate::{Bounds, Environment, Falloff, Geometry, Light, LightKind, Surroundin
 
 /// The default ambient term as a share of what the lights give.
 const DEFAULT_AMBIENT: f32 = 0.1;
+/// The cosine between the way of a light and the direction to its disc: single precision errs by less.
+const SAME: f32 = -0.999_999;
+
+/// Whether light that travels along `direction` comes from a disc around `toward`.
+fn is_disc(direction: Vec3, toward: Vec3) -> bool {
+    direction.dot(toward) < SAME
+}
 
 /// The lights of a scene, and the ambient light. Dereferences to the list of lights.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -91,13 +98,17 @@ impl Lights {
 
     /// Whether what surrounds the scene shows a light: it is the sun, or a part of the image.
     pub fn surroundings_show(&self, light: &Light) -> bool {
-        /// The cosine between the way of its light and the direction to its disc: single precision errs by less.
-        const SAME: f32 = -0.999_999;
         let (LightKind::Directional { direction, .. }, Some(environment)) = (&light.kind, &self.environment) else {
             return false;
         };
         let mut discs = environment.sun().into_iter().chain(environment.discs());
-        discs.any(|disc| direction.dot(disc.direction) < SAME)
+        discs.any(|disc| is_disc(*direction, disc.direction))
+    }
+
+    /// Whether a light is the sun of what surrounds the scene, which its image does not show.
+    pub fn sun_is(&self, light: &Light) -> bool {
+        let sun = self.environment.as_ref().and_then(|environment| environment.sun());
+        matches!(light.kind, LightKind::Directional { direction, .. } if sun.is_some_and(|sun| is_disc(direction, sun.direction)))
     }
 
     /// Whether rays see a light as a surface of its own: it shines and has an area, and neither a lamp nor what surrounds the scene shows it. What

@@ -56,6 +56,8 @@
 #define PI 0x1.921fb6p1f
 // 1 / π.
 #define FRAC_1_PI 0x1.45f306p-2f
+// π/2.
+#define FRAC_PI_2 0x1.921fb6p0f
 // The largest relative error of one operation in single precision, 2^-24.
 #define UNIT_ROUNDOFF 0x1p-24f
 // Ray origins farther than this many radii from the centre of the triangles are moved closer.
@@ -134,11 +136,29 @@
 // A light is in front of a surface as far away, by rounding and by a hair: lamps lie in ceilings.
 #define SAME_DISTANCE 0x1.0004p0f
 // Up to this roughness, mirror rays show all that facets reflect,
-#define MIRROR_FADES 0x1.0a3d7p-3f
+#define MIRROR_FADES 0x1p-1f
 // and from here on nothing.
-#define MIRROR_ENDS 0x1p-1f
-// The angle of the cone that a mirror ray of facets stands for, in widths of their lobes: most of what they reflect comes from there.
+#define MIRROR_ENDS 0x1.333334p-1f
+// Up to this roughness, they show all of lights, too,
+#define LIGHTS_FADE 0x1.99999ap-5f
+// and from here on nothing: highlights do, without noise.
+#define LIGHTS_END 0x1.5c28f6p-3f
+// That is counted in so many parts, which fit into the bits of a ray,
+#define PARTS_OF_FADE 15u
+// above the surfaces that it went through.
+#define FADE_SHIFT 28u
+// The angle of the cone that all mirror rays of facets stand for, in widths of their lobes: most of what they reflect comes from there.
 #define WIDTH_OF_LOBE 0x1.8p1f
+// A mirror ray of facets that shows all of a pixel is as many as that, in different directions, if the lobe is wide,
+#define MOST_DIRECTIONS 8u
+// as from this width on, the square of the roughness.
+#define WIDE_LOBE 0x1.47ae14p-7f
+// Cones of mirror rays are as narrow as if a pixel had that many at most.
+#define MOST_CONES 0x1p6f
+// The bit from which on a ray's number among them is in a list, above its sample.
+#define DIRECTION_SHIFT 17u
+// Stands for a light in the random pattern of the directions of a pixel's mirror rays.
+#define LOBE_PATTERN 0x7ffffffeu
 // Half of the part of a light that one of its points stands for, as a share of its size.
 #define PART_OF_LIGHT 0x1.666666p-2f
 // Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
@@ -176,6 +196,8 @@
 #define OPAQUE 0x1.fep7f
 // The bit from which on the number of surfaces that a ray went through is in a list, above its sample.
 #define THROUGHS_SHIFT 20u
+// These bits, shifted down.
+#define THROUGHS_MASK 255u
 // 1/ln 2.
 #define LOG2_E 0x1.715476p0f
 // ln 2 in two parts, the first of few digits.
@@ -435,6 +457,8 @@
 #define CROWDED 0x1p-1f
 // To ask cells that are smaller once more, that must be more than this many times as much.
 #define CROWDED_AGAIN 0x1p2f
+// Where it is more than this, as among leaves, smaller cells would not help either.
+#define HOPELESS 0x1.8p1f
 // By how many levels coarse cells may become smaller.
 #define CLOSER 2u
 // The cone of the surroundings that a ray sees is this share of its own: wider ones would look below the horizon.
@@ -821,6 +845,8 @@ struct alignas(4) Light {
         SURFACE = 2u,
         // and those of the camera.
         CAMERA = 4u,
+        // Mirror rays see it in the image of what surrounds the scene, however rough the mirror is.
+        PAINTED = 8u,
     };
     Vec3 position;
     unsigned kind;
@@ -952,11 +978,12 @@ struct alignas(4) Material {
     float seen_square;
     Vec3 gain;
     float cosine;
+    float shown;
     float unmirrored;
     float opacity;
     unsigned metallic_roughness_texture;
 };
-static_assert(sizeof(Material) == 236, "size of Material");
+static_assert(sizeof(Material) == 240, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -989,9 +1016,10 @@ static_assert(PLACE_OF(Material, mirrored) == 192, "place of Material::mirrored"
 static_assert(PLACE_OF(Material, seen_square) == 204, "place of Material::seen_square");
 static_assert(PLACE_OF(Material, gain) == 208, "place of Material::gain");
 static_assert(PLACE_OF(Material, cosine) == 220, "place of Material::cosine");
-static_assert(PLACE_OF(Material, unmirrored) == 224, "place of Material::unmirrored");
-static_assert(PLACE_OF(Material, opacity) == 228, "place of Material::opacity");
-static_assert(PLACE_OF(Material, metallic_roughness_texture) == 232, "place of Material::metallic_roughness_texture");
+static_assert(PLACE_OF(Material, shown) == 224, "place of Material::shown");
+static_assert(PLACE_OF(Material, unmirrored) == 228, "place of Material::unmirrored");
+static_assert(PLACE_OF(Material, opacity) == 232, "place of Material::opacity");
+static_assert(PLACE_OF(Material, metallic_roughness_texture) == 236, "place of Material::metallic_roughness_texture");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;
@@ -1972,17 +2000,21 @@ struct alignas(8) MirrorRays {
     const Hit *hits;
     unsigned *counts;
     unsigned *thin;
+    unsigned *per_ray;
+    unsigned long long seed;
     ListedRay *onward;
     Cone *cones;
 };
-static_assert(sizeof(MirrorRays) == 840, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 856, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
 static_assert(PLACE_OF(MirrorRays, rays) == 680, "place of MirrorRays::rays");
 static_assert(PLACE_OF(MirrorRays, hits) == 800, "place of MirrorRays::hits");
 static_assert(PLACE_OF(MirrorRays, counts) == 808, "place of MirrorRays::counts");
 static_assert(PLACE_OF(MirrorRays, thin) == 816, "place of MirrorRays::thin");
-static_assert(PLACE_OF(MirrorRays, onward) == 824, "place of MirrorRays::onward");
-static_assert(PLACE_OF(MirrorRays, cones) == 832, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, per_ray) == 824, "place of MirrorRays::per_ray");
+static_assert(PLACE_OF(MirrorRays, seed) == 832, "place of MirrorRays::seed");
+static_assert(PLACE_OF(MirrorRays, onward) == 840, "place of MirrorRays::onward");
+static_assert(PLACE_OF(MirrorRays, cones) == 848, "place of MirrorRays::cones");
 
 struct alignas(8) MergedRays {
     Scene scene;

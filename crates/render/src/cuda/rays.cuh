@@ -92,12 +92,24 @@ DEVICE Vec3 weight_of(const Rays &rays, unsigned ray) {
     return rays.list == nullptr ? Vec3{1.0f, 1.0f, 1.0f} : load_listed(rays.list + ray, 2);
 }
 
-// The number of the pixel's sample that a ray goes through, and one, 0 for a camera's; from bit THROUGHS_SHIFT on, through how many surfaces
-// it went.
+// The number of the pixel's sample that a ray goes through, and one, 0 for a camera's; from bit DIRECTION_SHIFT on, which of a rough mirror's
+// rays of this sample it is; from bit THROUGHS_SHIFT on, through how many surfaces
+// it went; from bit FADE_SHIFT on, how much of lights it does not show.
 DEVICE unsigned sample_of(const Rays &rays, unsigned ray) { return rays.list != nullptr ? __ldg(&rays.list[ray].sample) : 0; }
 
 // Through how many surfaces a ray went.
-DEVICE unsigned throughs_of(const Rays &rays, unsigned ray) { return sample_of(rays, ray) >> THROUGHS_SHIFT; }
+DEVICE unsigned throughs_of(const Rays &rays, unsigned ray) { return sample_of(rays, ray) >> THROUGHS_SHIFT & THROUGHS_MASK; }
+
+// The share of lights that a ray shows: highlights on the rough mirror that it comes from show the rest.
+DEVICE float lights_share(const Rays &rays, unsigned ray) {
+    return 1.0f - (float)(sample_of(rays, ray) >> FADE_SHIFT) / (float)PARTS_OF_FADE;
+}
+
+// The number of the pixel's sample that a ray goes through.
+DEVICE unsigned sample_index(const Rays &rays, unsigned ray) {
+    const unsigned sample = sample_of(rays, ray) & ((1u << DIRECTION_SHIFT) - 1);
+    return sample > 0 ? sample - 1 : 0;
+}
 
 // Whether a mirror reflected a ray.
 DEVICE bool is_mirrored(const Rays &rays, unsigned ray) { return rays.depth > throughs_of(rays, ray); }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use lightmesh_layout::constants::THROUGHS_SHIFT;
+use lightmesh_layout::constants::{DIRECTION_SHIFT, FADE_SHIFT, PARTS_OF_FADE, THROUGHS_MASK, THROUGHS_SHIFT};
 
 use crate::accel::{Hit, Ray, Triangle};
 use crate::antialiasing::Antialiasing;
@@ -38,8 +38,9 @@ pub struct RayList {
     pub rays: Vec<Ray>,
     /// The pixel of each ray, y · width + x of the window.
     pub pixels: Vec<u32>,
-    /// The number of the pixel's sample that each ray goes through, and one; from bit [`THROUGHS_SHIFT`] on, through how many surfaces it
-    /// went. Empty if pixels have one sample and no surface lets rays through.
+    /// The number of the pixel's sample that each ray goes through, and one; from bit [`DIRECTION_SHIFT`] on, which of a rough mirror's rays of this
+    /// sample it is; from bit [`THROUGHS_SHIFT`] on, through how many surfaces it
+    /// went; from bit [`FADE_SHIFT`] on, how much of lights it does not show. Empty for camera rays.
     pub samples: Vec<u32>,
     /// How often the rays went on at surfaces: through them or mirrored.
     pub depth: u32,
@@ -84,7 +85,23 @@ impl RayList {
 
     /// Through how many surfaces a ray went.
     pub(crate) fn throughs(&self, ray: usize) -> u32 {
-        self.sample(ray) >> THROUGHS_SHIFT
+        self.sample(ray) >> THROUGHS_SHIFT & THROUGHS_MASK
+    }
+
+    /// The number of the pixel's sample that a ray goes through.
+    pub(crate) fn sample_index(&self, ray: usize) -> u32 {
+        (self.sample(ray) & ((1 << DIRECTION_SHIFT) - 1)).saturating_sub(1)
+    }
+
+    /// The same as [`sample`](RayList::sample), of a ray that shows all of lights.
+    pub(crate) fn unfaded(&self, ray: usize) -> u32 {
+        self.sample(ray) & ((1 << FADE_SHIFT) - 1)
+    }
+
+    /// The share of lights that a ray shows: [highlights](crate::shading::facets) on the rough mirror that it comes from show the rest.
+    #[inline(always)]
+    pub(crate) fn lights_share(&self, ray: usize) -> f32 {
+        1.0 - (self.sample(ray) >> FADE_SHIFT) as f32 / PARTS_OF_FADE as f32
     }
 
     /// Whether a mirror reflected a ray.
@@ -179,7 +196,7 @@ impl RayList {
         self.weights.is_empty()
     }
 
-    /// The number of the pixel's sample that a ray goes through, and one; from bit [`THROUGHS_SHIFT`] on, through how many surfaces it went.
+    /// The number of the pixel's sample that a ray goes through, and one, with the rest of [`samples`](RayList::samples).
     pub(crate) fn sample(&self, ray: usize) -> u32 {
         self.samples.get(ray).copied().unwrap_or(0)
     }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use lightmesh_layout::constants::AROUND;
 use lightmesh_memory::Budget;
-use lightmesh_scene::{Bounds, Camera};
+use lightmesh_scene::{Bounds, Camera, Material};
 
 use crate::antialiasing::Antialiasing;
 use crate::bands;
@@ -16,6 +16,7 @@ use crate::plan::{Footprint, Plan};
 use crate::prepared::PreparedScene;
 use crate::probes::{GivenPoints, Probes, ROW};
 use crate::settings::{AmbientSource, Crop, Setting, Settings, Sharing};
+use crate::shading::facets::{directions, mirrored_share};
 use crate::techniques::{Request, Technique};
 use crate::view::{View, Window};
 
@@ -113,6 +114,7 @@ impl<'a> Resolved<'a> {
                 AmbientSource::Auto | AmbientSource::Constant => None,
             },
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),
+            directions: most_directions(scene, bounces, antialiasing.as_ref()),
             antialiasing,
             bounces,
             lets_through: scene.lets_through(),
@@ -194,6 +196,18 @@ fn footprint(scene: &PreparedScene, technique: &Technique, lights: LightGroups) 
     let Footprint { host, device } = technique.footprint(held);
     let colors = if scene.lets_through() { size_of::<Vec3>() as u64 * held } else { 0 };
     Footprint { host: host + colors, device: device + colors }
+}
+
+/// In how many directions mirrors reflect a ray, at most.
+fn most_directions(scene: &PreparedScene, bounces: u32, antialiasing: Option<&Antialiasing>) -> u32 {
+    let is_rough = |material: &Material| {
+        // An image may make it less rough.
+        let varies = material.metallic_roughness_texture.is_some();
+        material.faceted().is_some_and(|facets| varies || mirrored_share(facets.roughness) > 0.0)
+    };
+    let any = bounces > 0 && scene.scene.geometry.materials.iter().any(is_rough);
+    let weight = 1.0 / antialiasing.map_or(1.0, |all| all.samples as f32);
+    if any { directions(weight, 1.0) } else { 1 }
 }
 
 /// The pixels that are rendered: those that are asked for, and those around them on which they depend.

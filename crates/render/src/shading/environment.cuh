@@ -55,15 +55,15 @@ DEVICE float faded(float radius, float spread) {
                                    : 3.0f * radius * radius * spread / (end * end * end);
 }
 
-// The same with the sun. A function of its own, so that its callers keep their registers.
-COLD Vec3 environment_radiance(const Environment *environment, Vec3 direction, float spread) {
+// The same with a share `shown` of the sun. A function of its own, so that its callers keep their registers.
+COLD Vec3 environment_radiance(const Environment *environment, Vec3 direction, float spread, float shown) {
     const Vec3 seen = radiance_without_sun(environment, Levels{environment->levels, environment->lower}, direction, spread);
     // 3. The sun.
     if (environment->sun_radius < 0.0f)
         return seen;
     const float inside = environment->sun_radius - length(direction - environment->sun);
     const float share = spread > 0.0f ? fminf(fmaxf(inside / spread + 0.5f, 0.0f), 1.0f) : inside >= 0.0f ? 1.0f : 0.0f;
-    return share > 0.0f ? between(seen, environment->sun_radiance, share * faded(environment->sun_radius, spread)) : seen;
+    return share > 0.0f ? between(seen, shown * environment->sun_radiance, share * faded(environment->sun_radius, spread)) : seen;
 }
 
 // What surfaces receive from outside of the scene along a direction, but for lights.

@@ -19,7 +19,8 @@ pub(crate) fn missed(wave: &HostWave, ray: usize) -> Vec3 {
     let lights = wave.lights();
     match (&lights.environment, lights.background) {
         (Some(environment), background) if background.is_none() || wave.rays.is_mirrored(ray) => {
-            radiance(environment, wave.rays.rays[ray].direction, wave.rays.spread_of(ray))
+            let shown = wave.rays.lights_share(ray);
+            radiance(environment, wave.rays.rays[ray].direction, wave.rays.spread_of(ray), shown)
         }
         (_, background) => background.unwrap_or(Vec3::ZERO),
     }
@@ -30,14 +31,14 @@ pub(crate) fn surroundings(lights: &Lights, direction: Vec3, spread: f32) -> Vec
     lights.environment.as_ref().map_or(Vec3::ZERO, |environment| without_sun(environment.gathered(), direction, spread))
 }
 
-/// The mean radiance that a cone of this angle around `direction` sees.
-pub fn radiance(environment: &Environment, direction: Vec3, spread: f32) -> Vec3 {
+/// The mean radiance that a cone of this angle around `direction` sees, with a share `shown` of the sun.
+pub fn radiance(environment: &Environment, direction: Vec3, spread: f32, shown: f32) -> Vec3 {
     let seen = without_sun(environment, direction, spread);
     // 3. The sun.
     let Some(sun) = environment.sun() else { return seen };
     let inside = sun.radius - (direction - sun.direction).length();
     let share = if spread > 0.0 { (inside / spread + 0.5).clamp(0.0, 1.0) } else { f32::from(inside >= 0.0) };
-    if share > 0.0 { between(seen, sun.radiance, share * faded(sun.radius, spread)) } else { seen }
+    if share > 0.0 { between(seen, shown * sun.radiance, share * faded(sun.radius, spread)) } else { seen }
 }
 
 /// How much fainter a disc is with an edge as wide as `spread`, so that it gives as much light: the edge is a frustum of a cone, or a cone.

@@ -19,6 +19,12 @@ DEVICE float facets_mirrored_share(float roughness) {
     return share * share * (3.0f - 2.0f * share);
 }
 
+// How much of lights mirror rays do not show, in PARTS_OF_FADE parts.
+DEVICE unsigned facets_faded(float roughness) {
+    const float share = fminf(fmaxf((LIGHTS_END - roughness) / (LIGHTS_END - LIGHTS_FADE), 0.0f), 1.0f);
+    return (unsigned)((float)PARTS_OF_FADE * (1.0f - share * share * (3.0f - 2.0f * share)) + 0.5f);
+}
+
 // a and b: f0 a + f90 b of light from all sides is reflected.
 DEVICE FacetShare facets_of_all(const FacetShare *table, float roughness, float cosine) {
     const float last = (float)FACET_PLACES - 1.0f;
@@ -68,7 +74,9 @@ COLD void set_facets(const FacetShare *table, FacetSight sight, Material *own) {
     const float width = fmaxf(roughness * roughness, LEAST_FACET_WIDTH), seen = 0.25f * sight.spread;
     own->square = width * width;
     own->seen_square = own->square + seen * seen;
-    own->unmirrored = 1.0f - shown;
+    own->shown = shown;
+    const float lights = sight.followed ? 1.0f - (float)facets_faded(roughness) / (float)PARTS_OF_FADE : 0.0f;
+    own->unmirrored = 1.0f - lights;
     own->ks = front;
     own->grazing = end;
     own->gain = opacity * gain;
@@ -96,7 +104,85 @@ DEVICE Vec3 facets_toward(const Material &own, Vec3 normal, Vec3 view, Vec3 dire
     return (wide / (x * x) * 0.5f / (seen + lit)) * (fresnel * own.gain);
 }
 
-// The cone that a mirror with facets reflects, if a smooth one reflects `cone`.
-DEVICE Cone facets_blurred(Cone cone, float roughness) {
-    return Cone{cone.width, fabsf(cone.spread) + WIDTH_OF_LOBE * (roughness * roughness)};
+// The cosine and the sine of a share of a full turn.
+struct Turned {
+    float cosine, sine;
+};
+
+DEVICE Turned facets_around(float turn) {
+    // An eighth of a turn to either side, by the series of the sine.
+    const float quarters = 4.0f * turn;
+    const unsigned quarter = min((unsigned)quarters, 3u);
+    const float angle = (quarters - (float)quarter - 0.5f) * FRAC_PI_2;
+    const float square = angle * angle;
+    const float sine = angle * (1.0f - square * (1.0f / 6.0f) * (1.0f - square * (1.0f / 20.0f)));
+    const float cosine = sqrtf(1.0f - sine * sine);
+    if (quarter == 0)
+        return Turned{cosine, sine};
+    if (quarter == 1)
+        return Turned{-sine, cosine};
+    return quarter == 2 ? Turned{-cosine, -sine} : Turned{sine, -cosine};
+}
+
+// What the other side's facets leave of light: one of its factors.
+DEVICE float facets_shadowing(float own, float cosine) { return sqrtf(cosine * cosine * (1.0f - own) + own); }
+
+// A direction in which facets reflect the view, and the share of the radiance there that the eye sees.
+struct Drawn {
+    Vec3 direction, share;
+};
+
+// 6. The direction in which the facets that `u` and `v` in [0, 1) select reflect the view; a share of zero where they reflect it into the surface.
+COLD Drawn facets_drawn(const Material &own, Vec3 normal, Vec3 view, float u, float v) {
+    // Along the surface to the eye, and across.
+    const Vec3 slope = view - dot(normal, view) * normal;
+    const float along_square = length_squared(slope);
+    const Vec3 axis = fabsf(normal.x) < 0.5f ? Vec3{1.0f, 0.0f, 0.0f} : Vec3{0.0f, 1.0f, 0.0f};
+    const Vec3 beside = cross(normal, axis);
+    const Vec3 along = along_square > LEAST_SMOOTH_SQUARE ? slope / sqrtf(along_square) : beside / length(beside);
+    const Vec3 across = cross(normal, along);
+    const float cosine = own.cosine, width = own.roughness * own.roughness;
+    const float sine = sqrtf(fmaxf(1.0f - cosine * cosine, 0.0f));
+
+    // The facet, where the surface is stretched to a ball.
+    const float size = sqrtf(width * sine * (width * sine) + cosine * cosine);
+    const float x = width * sine / size, z = cosine / size;
+    const Turned turned = facets_around(u);
+    const float height = (1.0f - v) * (1.0f + z) - z;
+    const float ring = sqrtf(fmaxf(1.0f - height * height, 0.0f));
+    const Vec3 unscaled = {width * (ring * turned.cosine + x), width * (ring * turned.sine), height + z};
+    const Vec3 half = unscaled / length(unscaled);
+
+    // The view, reflected.
+    const float facing = sine * half.x + cosine * half.z;
+    const Vec3 reflected = 2.0f * facing * half - Vec3{sine, 0.0f, cosine};
+    const float light = reflected.z;
+    if (!(light > 0.0f && facing > 0.0f))
+        return Drawn{normal, splat(0.0f)};
+    const Vec3 direction = reflected.x * along + reflected.y * across + light * normal;
+
+    // What the other side's shadowing leaves, and Fresnel's equations.
+    const float square = width * width;
+    const float seen = light * facets_shadowing(square, cosine), lit = cosine * facets_shadowing(square, light);
+    const float left = light * (cosine + facets_shadowing(square, cosine)) / (seen + lit);
+    const float away = fmaxf(1.0f - facing, 0.0f);
+    const float twice = away * away;
+    const Vec3 fresnel = between(own.ks, splat(own.grazing), twice * twice * away);
+    return Drawn{direction / length(direction), (own.shown * left) * (fresnel * own.gain)};
+}
+
+// In how many directions a mirror with facets reflects a ray, a power of two; the share `weight` of their radiance reaches the pixel.
+DEVICE unsigned facets_directions(float weight, float roughness) {
+    const float wide = fminf(roughness * roughness / WIDE_LOBE, 1.0f);
+    const float wanted = (float)MOST_DIRECTIONS * wide * sqrtf(weight);
+    unsigned count = 1;
+    while (count < MOST_DIRECTIONS && (float)count < wanted)
+        count *= 2;
+    return count;
+}
+
+// The cone that a mirror with facets reflects in each of `count` directions, if a smooth one reflects `cone`.
+DEVICE Cone facets_blurred(Cone cone, float roughness, unsigned count, float weight) {
+    const float all = fminf(fmaxf((float)count / weight, 1.0f), MOST_CONES);
+    return Cone{cone.width, fabsf(cone.spread) + WIDTH_OF_LOBE * (roughness * roughness) / sqrtf(all)};
 }

@@ -14,15 +14,19 @@
 //! 3. **Below the layer**, what it does not reflect is scattered, but of a metal nothing is.
 //! 4. **Lobes** are as wide as what they stand for: the part of a light that one of its points stands for, and the part of the surface that a
 //!    sample sees (Tokuyoshi, Kaplanyan, *Improved Geometric Specular Antialiasing*, I3D 2019). So highlights are neither dots nor noise.
-//! 5. **Mirrors.** Where mirror rays are followed, they show what smooth surfaces reflect, and of rougher ones a part that ends at a roughness
-//!    of 0.5; the rest is as if the light from all sides was the mean that is gathered.
+//! 5. **Mirrors.** Where mirror rays are followed, they show what facets reflect up to a roughness of 0.5, and less and less up to 0.6; the rest is
+//!    as if the light from all sides was the mean that is gathered. Of lights they show less and less from 0.05 to 0.17: highlights have no noise.
+//! 6. **Directions** of mirror rays are distributed as the facets that are seen reflect the view (Heitz, *Sampling the GGX Distribution of
+//!    Visible Normals*, JCGT 7(4), 2018), by points on a spherical cap (Dupuy, Benyoub, *Sampling Visible GGX Normals with Spherical Caps*, HPG
+//!    2023). A ray's share is what remains of f N·L over its probability: F times what the other side's shadowing leaves.
 
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 use lightmesh_layout::constants::{
-    FACET_PLACES, LEAST_FACET_WIDTH, LEAST_VIEW_COSINE, MIRROR_ENDS, MIRROR_FADES, WIDTH_OF_LOBE,
+    FACET_PLACES, FRAC_PI_2, LEAST_FACET_WIDTH, LEAST_SMOOTH_SQUARE, LEAST_VIEW_COSINE, LIGHTS_END, LIGHTS_FADE,
+    MIRROR_ENDS, MIRROR_FADES, MOST_CONES, MOST_DIRECTIONS, PARTS_OF_FADE, WIDE_LOBE, WIDTH_OF_LOBE,
 };
 use lightmesh_scene::Facets;
 
@@ -55,7 +59,11 @@ pub struct Lobe {
     seen_square: f32,
     /// N·E.
     cosine: f32,
-    /// The share of reflections that mirror rays do not show.
+    /// The width of the facets' distribution, 0 for a smooth mirror.
+    width: f32,
+    /// The share of reflections that mirror rays show.
+    pub shown: f32,
+    /// The share of the reflections of lights that they do not show.
     pub unmirrored: f32,
 }
 
@@ -86,8 +94,58 @@ impl Lobe {
         // 4.
         let square = square_of(facets.roughness);
         let seen = 0.25 * sight.spread;
-        let (seen_square, unmirrored) = (square + seen * seen, 1.0 - shown);
-        Lobe { ends, gain: opacity * gain, square, seen_square, cosine, unmirrored }
+        let seen_square = square + seen * seen;
+        let lights = if sight.followed { 1.0 - faded(facets.roughness) as f32 / PARTS_OF_FADE as f32 } else { 0.0 };
+        let unmirrored = 1.0 - lights;
+        let width = facets.roughness * facets.roughness;
+        Lobe { ends, gain: opacity * gain, square, seen_square, cosine, width, shown, unmirrored }
+    }
+
+    /// 6. The direction in which the facets that `u` in [0, 1)² selects reflect the view, and the share of the radiance there that the eye sees; zero
+    /// where they reflect it into the surface. The mean over all u is what is mirrored.
+    pub fn drawn(&self, normal: Vec3, view: Vec3, u: [f32; 2]) -> (Vec3, Vec3) {
+        // Along the surface to the eye, and across.
+        let slope = view - normal.dot(view) * normal;
+        let square = slope.length_squared();
+        let along = if square > LEAST_SMOOTH_SQUARE {
+            slope / square.sqrt()
+        } else {
+            let axis = if normal.x.abs() < 0.5 { Vec3::X } else { Vec3::Y };
+            let aside = normal.cross(axis);
+            aside / aside.length()
+        };
+        let across = normal.cross(along);
+        let (cosine, width) = (self.cosine, self.width);
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+
+        // The facet, where the surface is stretched to a ball.
+        let length = (width * sine * (width * sine) + cosine * cosine).sqrt();
+        let (x, z) = (width * sine / length, cosine / length);
+        let [turned, aside] = around(u[0]);
+        let height = (1.0 - u[1]) * (1.0 + z) - z;
+        let ring = (1.0 - height * height).max(0.0).sqrt();
+        let half = Vec3::new(width * (ring * turned + x), width * (ring * aside), height + z);
+        let half = half / half.length();
+
+        // The view, reflected.
+        let facing = sine * half.x + cosine * half.z;
+        let reflected = 2.0 * facing * half - Vec3::new(sine, 0.0, cosine);
+        let light = reflected.z;
+        if !(light > 0.0 && facing > 0.0) {
+            return (normal, Vec3::ZERO);
+        }
+        let direction = reflected.x * along + reflected.y * across + light * normal;
+
+        // What the other side's shadowing leaves, and Fresnel's equations.
+        let own = width * width;
+        let shadowing = |cosine: f32| (cosine * cosine * (1.0 - own) + own).sqrt();
+        let (seen, lit) = (light * shadowing(cosine), cosine * shadowing(light));
+        let left = light * (cosine + shadowing(cosine)) / (seen + lit);
+        let away = (1.0 - facing).max(0.0);
+        let square = away * away;
+        let [f0, f90] = self.ends;
+        let fresnel = between(f0, f90, square * square * away);
+        (direction / direction.length(), (self.shown * left) * (fresnel * self.gain))
     }
 
     /// π f for light from a direction, where half of the part of the light that it stands for is `part` wide: an angle.
@@ -114,9 +172,46 @@ impl Lobe {
     }
 }
 
-/// The cone that a mirror with facets reflects, if a smooth one reflects `cone`.
-pub(crate) fn blurred(cone: Cone, roughness: f32) -> Cone {
-    Cone { spread: cone.spread.abs() + WIDTH_OF_LOBE * (roughness * roughness), ..cone }
+/// The cosine and the sine of a share of a full turn.
+#[inline(always)]
+fn around(turn: f32) -> [f32; 2] {
+    // An eighth of a turn to either side, by the series of the sine.
+    let quarters = 4.0 * turn;
+    let quarter = (quarters as u32).min(3);
+    let angle = (quarters - quarter as f32 - 0.5) * FRAC_PI_2;
+    let square = angle * angle;
+    let sine = angle * (1.0 - square * (1.0 / 6.0) * (1.0 - square * (1.0 / 20.0)));
+    let cosine = (1.0 - sine * sine).sqrt();
+    match quarter {
+        0 => [cosine, sine],
+        1 => [-sine, cosine],
+        2 => [-cosine, -sine],
+        _ => [sine, -cosine],
+    }
+}
+
+/// In how many directions a mirror with facets reflects a ray, a power of two; the share `weight` of their radiance reaches the pixel.
+pub(crate) fn directions(weight: f32, roughness: f32) -> u32 {
+    let wide = (roughness * roughness / WIDE_LOBE).min(1.0);
+    let wanted = MOST_DIRECTIONS as f32 * wide * weight.sqrt();
+    let mut count = 1;
+    while count < MOST_DIRECTIONS && (count as f32) < wanted {
+        count *= 2;
+    }
+    count
+}
+
+/// The cone that a mirror with facets reflects in each of `count` directions, if a smooth one reflects `cone`; `weight` is the share of a ray.
+/// Together they are as wide as the lobe.
+pub(crate) fn blurred(cone: Cone, roughness: f32, count: u32, weight: f32) -> Cone {
+    let all = (count as f32 / weight).clamp(1.0, MOST_CONES);
+    Cone { spread: cone.spread.abs() + WIDTH_OF_LOBE * (roughness * roughness) / all.sqrt(), ..cone }
+}
+
+/// How much of lights mirror rays do not show, in [`PARTS_OF_FADE`] parts.
+pub(crate) fn faded(roughness: f32) -> u32 {
+    let share = ((LIGHTS_END - roughness) / (LIGHTS_END - LIGHTS_FADE)).clamp(0.0, 1.0);
+    (PARTS_OF_FADE as f32 * (1.0 - share * share * (3.0 - 2.0 * share)) + 0.5) as u32
 }
 
 /// The share of what facets reflect that mirror rays show.

@@ -55,7 +55,7 @@ pub(crate) struct Surface {
     /// Phong exponent.
     shininess: f32,
     /// In its place, of a surface with facets.
-    lobe: Option<Lobe>,
+    pub(crate) lobe: Option<Lobe>,
     /// n₁/n₂, from the side of the viewer to the other, of a surface that bends light.
     eta: Option<f32>,
     /// Whether its mirror ray is followed.
@@ -71,12 +71,18 @@ impl Surface {
         let mesh = &geometry.mesh;
         let material = &geometry.materials[mesh.materials[mesh.stored(hit.triangle)] as usize];
         let (normal, relief) = normal_at(wave.scene, material, (ray, cone), hit, &point);
+        let mut coefficients = Coefficients::at(wave.scene, material, ray, cone, hit);
+        // Highlights show the rest of the light that stands for what it emits.
+        let shown = wave.rays.lights_share(index);
+        if material.lamp && shown < 1.0 {
+            coefficients.emission *= shown;
+        }
         let surface = Surface {
             normal,
             relief,
             point,
             view: -ray.direction,
-            coefficients: Coefficients::at(wave.scene, material, ray, cone, hit),
+            coefficients,
             shininess: material.shininess,
             lobe: None,
             followed: wave.rays.mirrors(index),
@@ -169,9 +175,13 @@ impl Surface {
         let softened = self.softened(direction, cosine);
         let mut answer = softened * self.coefficients.kd;
         if let Some(lobe) = &self.lobe {
-            let share = if glint.seen { lobe.unmirrored } else { 1.0 };
+            let share = match glint.seen {
+                0 => 1.0,
+                seen if seen & scene::Light::PAINTED != 0 => 1.0 - lobe.shown,
+                _ => lobe.unmirrored,
+            };
             answer += (softened * share) * lobe.toward(self.normal, self.view, direction, glint.part / distance);
-        } else if self.coefficients.ks != Vec3::ZERO && !(glint.seen && self.followed) {
+        } else if self.coefficients.ks != Vec3::ZERO && !(glint.seen != 0 && self.followed) {
             // What mirror rays see is no highlight, too.
             let mirrored = 2.0 * cosine * self.normal - direction;
             let highlight = mirrored.dot(self.view).max(0.0).powf(self.shininess);
@@ -276,6 +286,14 @@ impl Surface {
         self.relief.map_or(self.normal, |_| mirroring(self.normal, self.point.normal, self.view))
     }
 
+    /// A direction in which its facets reflect the view, and its share of the radiance there; see [`Lobe::drawn`]. A smooth normal may reflect into
+    /// the surface; then the direction is reflected there.
+    pub(crate) fn drawn(&self, lobe: &Lobe, u: [f32; 2]) -> (Vec3, Vec3) {
+        let (direction, share) = lobe.drawn(self.mirroring(), self.view, u);
+        let height = direction.dot(self.point.normal);
+        (if height < 0.0 { direction - 2.0 * height * self.point.normal } else { direction }, share)
+    }
+
     /// The reflection direction of the view. A smooth normal may reflect into the surface; then the geometric normal is used.
     pub(crate) fn mirrored(&self) -> Vec3 {
         let about = |normal: Vec3| 2.0 * normal.dot(self.view) * normal - self.view;
@@ -372,8 +390,8 @@ pub fn cone(light: &Light, direction: Vec3) -> f32 {
 pub struct LightTargets {
     /// By light; empty for a light without a size.
     pub points: Vec<Vec<Vec3>>,
-    /// Whether mirror rays see each light, too.
-    seen: Vec<bool>,
+    /// How mirror rays see each light, too.
+    seen: Vec<u32>,
 }
 
 /// What the highlight of a light is about.
@@ -381,15 +399,17 @@ pub struct LightTargets {
 struct Glint {
     /// Half of the width of the part of the light that a point stands for.
     part: f32,
-    /// Whether mirror rays see the light, too.
-    seen: bool,
+    /// How mirror rays see the light, too.
+    seen: u32,
 }
 
-/// How rays see a light, bits of [`scene::Light`]'s constants: as an emissive surface, or a part of what surrounds the scene, such as the sun and the soft box
+/// How rays see a light, bits of [`scene::Light`]'s constants: as an emissive surface, or the sun of what surrounds the scene, or in its image, as the soft box
 /// around a studio's key light, or as a surface that is none of the scene's.
 pub(crate) fn seen_as(lights: &Lights, light: &Light) -> u32 {
-    if light.lamp || lights.studio || lights.surroundings_show(light) {
+    if light.lamp || lights.sun_is(light) {
         scene::Light::SEEN
+    } else if lights.studio || lights.surroundings_show(light) {
+        scene::Light::SEEN | scene::Light::PAINTED
     } else if lights.is_shown(light) {
         scene::Light::SEEN | scene::Light::SURFACE | if light.visible { scene::Light::CAMERA } else { 0 }
     } else {
@@ -409,7 +429,7 @@ impl LightTargets {
         let spread = |light: &Light| (0..LIGHT_TARGETS / 2).flat_map(|index| pair(light, index)).collect();
         LightTargets {
             points: lights.iter().map(|light| if light.has_size() { spread(light) } else { Vec::new() }).collect(),
-            seen: lights.iter().map(|light| seen_as(lights, light) != 0).collect(),
+            seen: lights.iter().map(|light| seen_as(lights, light)).collect(),
         }
     }
 

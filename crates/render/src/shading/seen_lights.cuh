@@ -9,6 +9,8 @@ struct Beam {
     Cone cone;
     // What the width of the cone is multiplied with, and where it hits a surface.
     float times, end;
+    // The share of lights that it shows.
+    float shown;
     bool from_camera;
 };
 
@@ -160,7 +162,7 @@ DEVICE Beam beam_of(const Rays &rays, const Hit *hits, unsigned ray, float times
     const Ray along = ray_at(rays, ray);
     const Hit hit = load_hit(hits, ray);
     const float end = hit.triangle != Hit::NONE ? hit.t : INFINITE;
-    return Beam{along.origin, along.direction, cone_of(rays, ray), times, end, rays.depth == 0};
+    return Beam{along.origin, along.direction, cone_of(rays, ray), times, end, lights_share(rays, ray), rays.depth == 0};
 }
 
 // All of what is behind, and no light yet.
@@ -186,7 +188,7 @@ COLD bool next_in_front(const Scene &scene, const Beam &beam, LightsInFront &wal
     }
     if (nearest.share == 0.0f)
         return false;
-    radiance = (walk.left * nearest.share) * nearest.radiance;
+    radiance = (walk.left * nearest.share * beam.shown) * nearest.radiance;
     walk.left *= 1.0f - nearest.share;
     walk.last_distance = nearest.distance;
     walk.last = index;

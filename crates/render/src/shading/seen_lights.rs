@@ -14,7 +14,7 @@
 //!
 //! 1. Where a ray meets a light, if no surface is nearer.
 //! 2. How much of its cone does: a rectangle takes from it what overlaps, a disc and a ball have an edge as wide as the cone, and as much light.
-//! 3. From the nearest on, each hides its share of what is behind it.
+//! 3. From the nearest on, each hides its share of what is behind it. Rays from rough mirrors show a share of its radiance alone.
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -117,6 +117,7 @@ impl<'a> SeenLights<'a> {
             times: times * list.samples_of(ray).sqrt(),
             end: if hit.is_some() { hit.t } else { f32::INFINITY },
         };
+        let shown = list.lights_share(ray);
         // 3. From the nearest on.
         let (mut left, mut last) = (1.0, (-1.0, 0));
         while left > 0.0 {
@@ -132,7 +133,7 @@ impl<'a> SeenLights<'a> {
                 }
             }
             let Some((index, seen)) = nearest else { break };
-            take(index, (left * seen.share) * seen.radiance);
+            take(index, (left * seen.share * shown) * seen.radiance);
             left *= 1.0 - seen.share;
             last = (seen.distance, index);
         }

@@ -102,9 +102,9 @@ DEVICE Vec3 arriving_from(const Surface &surface, const Light &light, Vec3 targe
     return softened(surface, direction, cosine) * strength(light, direction, distance);
 }
 
-// What a surface shows without lights if nothing else was there; `reflected` is the share of ambient light that it reflects.
-DEVICE Vec3 alone(const Scene &scene, const Surface &surface, Vec3 reflected) {
-    return ambient_at(scene, surface.normal) * reflected + surface.material->emission;
+// What a surface shows without lights if nothing else was there; `reflected` is the share of ambient light that it reflects, `emission` what it emits.
+DEVICE Vec3 alone(const Scene &scene, const Surface &surface, Vec3 reflected, Vec3 emission) {
+    return ambient_at(scene, surface.normal) * reflected + emission;
 }
 
 // The luminance of a colour.
@@ -126,7 +126,8 @@ DEVICE Vec3 reflected_by_facets(const Surface &surface, const Light &light, Vec3
     const float cosine = dot(surface.normal, direction);
     if (cosine <= 0.0f)
         return splat(0.0f);
-    const float share = light.seen ? surface.material->unmirrored : 1.0f;
+    const bool painted = (light.seen & Light::PAINTED) != 0;
+    const float share = !light.seen ? 1.0f : painted ? 1.0f - surface.material->shown : surface.material->unmirrored;
     const Vec3 lobe = facets_toward(*surface.material, surface.normal, surface.view, direction, part / distance);
     const float soft = softened(surface, direction, cosine);
     return strength(light, direction, distance) * (soft * surface.material->kd + (soft * share) * lobe);
@@ -254,6 +255,15 @@ DEVICE Vec3 mirrored_about(Vec3 normal, Vec3 view) { return 2.0f * dot(normal, v
 DEVICE Vec3 mirrored(const Surface &surface) {
     const Vec3 direction = mirrored_about(mirroring(surface), surface.view);
     return dot(direction, surface.point.normal) > 0.0f ? direction : mirrored_about(surface.point.normal, surface.view);
+}
+
+// A direction in which its facets reflect the view; a smooth normal may reflect into the surface, then the direction is reflected there.
+DEVICE Drawn drawn(const Surface &surface, float u, float v) {
+    Drawn drawn = facets_drawn(*surface.material, mirroring(surface), surface.view, u, v);
+    const float height = dot(drawn.direction, surface.point.normal);
+    if (height < 0.0f)
+        drawn.direction = drawn.direction - 2.0f * height * surface.point.normal;
+    return drawn;
 }
 
 // The ray that goes on through the surface: straight on from the other side, bent by a body, or reflected where the body reflects everything.

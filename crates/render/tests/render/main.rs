@@ -29,6 +29,7 @@ mod parts;
 mod placement;
 mod points;
 mod progress;
+mod rough_mirrors;
 mod roughness_maps;
 mod see_through;
 mod seen_lights;

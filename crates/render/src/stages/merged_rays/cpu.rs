@@ -80,7 +80,12 @@ fn part_of(wave: &HostWave, seen: &SeenLights, first: usize, run: &Range<usize>,
     let own = facet(first);
     let is_alike = |other: usize| {
         let is_taken = taken >> (other - run.start) & 1 != 0;
-        !is_taken && may_merge(other) && (wave.hits[other].triangle == hit.triangle || own.continues(&facet(other)))
+        if is_taken || !may_merge(other) {
+            return false;
+        }
+        let is_blurred = list.lights_share(first) < 1.0 && list.lights_share(other) < 1.0;
+        let is_like = |other: Facet| own.continues(&other) || is_blurred && own.resembles(&other);
+        wave.hits[other].triangle == hit.triangle || is_like(facet(other))
     };
     let part = (first + 1..run.end).filter(|&other| is_alike(other)).fold(1, |part, other| part | 1 << (other - first));
     let mirrored = if list.mirrors(first) { most_mirrored(scene, hit) } else { 0.0 };

@@ -41,7 +41,13 @@ DEVICE unsigned part_of(const MergedRays &args, unsigned first, unsigned start, 
         const Hit beside = load_hit(args.hits, other);
         if ((taken >> (other - start) & 1) != 0 || !may_merge(args, other, beside))
             continue;
-        if (beside.triangle == hit.triangle || continues(own, facet_of_ray(args, other, beside)))
+        const bool blurred = lights_share(args.rays, first) < 1.0f && lights_share(args.rays, other) < 1.0f;
+        bool like = beside.triangle == hit.triangle;
+        if (!like) {
+            const Facet facet = facet_of_ray(args, other, beside);
+            like = continues(own, facet) || (blurred && resembles(own, facet));
+        }
+        if (like)
             part |= 1u << (other - first);
     }
     const float mirrored = args.rays.depth - throughs_of(args.rays, first) < args.rays.bounces ? most_mirrored(args.scene, hit) : 0.0f;

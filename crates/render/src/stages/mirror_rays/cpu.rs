@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LEAST_ONWARD, LEAST_THIN, MOST_THROUGHS, THROUGHS_SHIFT};
-use lightmesh_scene::Material;
+use lightmesh_layout::constants::{
+    DIRECTION_SHIFT, FADE_SHIFT, LEAST_ONWARD, LEAST_THIN, LOBE_PATTERN, MOST_THROUGHS, THROUGHS_SHIFT,
+};
 use rayon::prelude::*;
 
 use super::thinning::Thinning;
@@ -12,9 +13,10 @@ use crate::accel::Ray;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
-use crate::shading::facets::blurred;
+use crate::sampling::Pattern;
+use crate::shading::Surface;
+use crate::shading::facets::{blurred, directions, faded};
 use crate::shading::seen_lights::SeenLights;
-use crate::shading::{Surface, material_of};
 
 /// Number of rays per task, without the rest of the last pixel.
 const BATCH: usize = 1024;
@@ -37,6 +39,13 @@ fn beyond(list: &RayList) -> RayList {
     RayList { depth: list.depth + 1, ..list.beyond() }
 }
 
+/// The pattern of the directions of all mirror rays of a ray's pixel at this depth: samples take parts of it that follow each other.
+fn pattern_of(wave: &HostWave, ray: usize) -> Pattern {
+    let list = wave.rays;
+    let key = u64::from(list.depth) << 32 | u64::from(list.window.number(list.pixels[ray]));
+    Pattern::new(wave.job.sampling.seed, key, LOBE_PATTERN as usize)
+}
+
 /// The rays that go on from those in `range`.
 fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
     let (list, has_cones) = (wave.rays, wave.rays.has_cones());
@@ -44,16 +53,13 @@ fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
     let mut thinning = Thinning::new(list);
     let thins = wave.scene.lets_through();
     let least = if thins { LEAST_THIN } else { LEAST_ONWARD };
-    let has_samples = !list.samples.is_empty() || wave.scene.lets_through();
     let mut thinned = |index: usize, weight: Vec3| if thins { thinning.weight(index, weight) } else { Some(weight) };
     let mut add = |index: usize, ray: Ray, cone: Option<Cone>, weight: Vec3, sample: u32| {
         next.rays.push(ray);
         next.cones.extend(cone);
         next.pixels.push(list.pixels[index]);
         next.weights.push(weight);
-        if has_samples {
-            next.samples.push(sample);
-        }
+        next.samples.push(sample);
     };
     for index in range.filter(|&ray| wave.sees(ray)) {
         let surface = Surface::new(wave, index);
@@ -74,18 +80,41 @@ fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
 
         // 2. Mirrored.
         let weight = reaches * surface.coefficients.mirrored;
-        if weight.max_element() >= least
-            && list.mirrors(index)
-            && let Some(weight) = thinned(index, weight)
-        {
-            let direction = surface.mirrored().normalize();
-            let onward = Ray { origin: surface.point.origin, direction, t_max: f32::INFINITY };
-            let cone = || {
-                let cone = surface.mirrored_cone(wave, hit, cone());
-                let facets = material_of(wave, index).and_then(Material::faceted);
-                facets.map_or(cone, |_| blurred(cone, surface.coefficients.roughness))
-            };
-            add(index, onward, has_cones.then(cone), weight, list.sample(index));
+        if !(weight.max_element() >= least && list.mirrors(index)) {
+            continue;
+        }
+        let (origin, t_max) = (surface.point.origin, f32::INFINITY);
+        let cone = || surface.mirrored_cone(wave, hit, cone());
+        let sample = list.unfaded(index);
+        let Some(lobe) = &surface.lobe else {
+            if let Some(weight) = thinned(index, weight) {
+                let direction = surface.mirrored().normalize();
+                add(index, Ray { origin, direction, t_max }, has_cones.then(cone), weight, sample);
+            }
+            continue;
+        };
+
+        // 3. In some directions, if it is rough.
+        let roughness = surface.coefficients.roughness;
+        let count = if list.is_mirrored(index) { 1 } else { directions(weight.max_element(), roughness) };
+        let cone = || blurred(cone(), roughness, count, list.weight(index).max_element());
+        let sample = sample | faded(roughness) << FADE_SHIFT;
+        let pattern = pattern_of(wave, index);
+        for number in 0..count {
+            let point = pattern.point(list.sample_index(index) * count + number);
+            let (direction, share) = surface.drawn(lobe, [point.x, point.y]);
+            let weight = reaches * share / count as f32;
+            if weight.max_element() >= least
+                && let Some(weight) = thinned(index, weight)
+            {
+                add(
+                    index,
+                    Ray { origin, direction, t_max },
+                    has_cones.then(cone),
+                    weight,
+                    sample | number << DIRECTION_SHIFT,
+                );
+            }
         }
     }
     next

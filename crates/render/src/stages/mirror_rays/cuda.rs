@@ -19,6 +19,7 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
     let rays = wave.rays;
     let blocks = rays.record.count.div_ceil(BLOCK);
     let counts = cuda.pool().room("counts of mirror rays", blocks as usize + 1)?;
+    let per_ray = cuda.pool().room("mirror rays of each ray", rays.record.count as usize)?;
     let launch = blocks_for(&(0..u64::from(blocks)), BLOCK);
     let thin = match wave.scene.host.lets_through() {
         true => Some(cuda.pool().room("shares of thin rays", rays.record.count as usize)?),
@@ -29,6 +30,8 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
         rays: rays.record,
         hits: wave.hits.hits.input(),
         counts: counts.output(),
+        per_ray: per_ray.output(),
+        seed: wave.job.sampling.seed,
         thin: thin.as_ref().map_or(Out::NULL, Buffer::output),
         ..MirrorRays::zeroed()
     };

@@ -6,6 +6,7 @@
 #include "cuda/prelude.cuh"
 
 #include "cuda/warp.cuh"
+#include "sampling.cuh"
 #include "shading/seen_lights.cuh"
 
 // The shares of what is behind the surface point of a ray, and in the mirror there, that reach the pixel; zero where no ray goes on.
@@ -60,38 +61,75 @@ DEVICE Vec3 thinned(Vec3 weight, float least, unsigned &sum) {
     return sum >> THIN_BITS != before >> THIN_BITS ? ((float)(1u << THIN_BITS) / (float)part) * weight : splat(0.0f);
 }
 
-// What is left of these shares.
-DEVICE Shares shares_of(const MirrorRays &args, unsigned ray) {
-    const Shares all = all_shares_of(args, ray);
-    if (args.thin == nullptr || ray >= args.rays.count || args.thin[ray] == 0)
-        return all;
+// The mirror at a surface point, and where it reflects a ray.
+struct Mirror {
+    Surface surface;
+    Pattern pattern;
+    // In how many directions; 0 if none.
+    unsigned count;
+    // The share of all that the ray sees that reaches the pixel, and of what a smooth mirror shows.
+    Vec3 reaches, mirrored;
+};
+
+// 2. The mirror that a ray sees. `mirrored` is the share of what is in it, `own` provides memory for its material.
+DEVICE Mirror mirror_at(const MirrorRays &args, unsigned ray, Vec3 mirrored, Material &own) {
+    Mirror mirror = {};
+    if (mirrored == splat(0.0f))
+        return mirror;
+    mirror.surface = surface_at(args.scene, args.rays, args.hits, ray, own);
+    mirror.mirrored = mirrored;
+    mirror.count = 1;
+    if (!mirror.surface.material->facets)
+        return mirror;
+
+    // 3. In some directions, if it is rough.
+    mirror.reaches = in_front(args.scene, args.rays, args.hits, ray, 1.0f).left * weight_of(args.rays, ray);
+    if (!is_mirrored(args.rays, ray))
+        mirror.count = facets_directions(max_element(mirrored), mirror.surface.material->roughness);
+    const unsigned number = number_in_image(args.rays.view, pixel_of(args.rays, ray));
+    mirror.pattern = pattern_of(args.seed, (unsigned long long)args.rays.depth << 32 | number, LOBE_PATTERN);
+    return mirror;
+}
+
+// Its ray number `number`; a share of zero if too little of it reaches the pixel.
+DEVICE Drawn mirror_ray(const MirrorRays &args, unsigned ray, const Mirror &mirror, unsigned number) {
+    if (!mirror.surface.material->facets)
+        return Drawn{normalize(mirrored(mirror.surface)), mirror.mirrored};
+    const Vec3 point = pattern_point(mirror.pattern, sample_index(args.rays, ray) * mirror.count + number);
+    Drawn one = drawn(mirror.surface, point.x, point.y);
+    one.share = mirror.reaches * one.share / (float)mirror.count;
+    if (max_element(one.share) < (args.thin != nullptr ? LEAST_THIN : LEAST_ONWARD))
+        one.share = splat(0.0f);
+    return one;
+}
+
+// The offset of a ray's pixel, and the parts of the rays of this pixel before.
+DEVICE unsigned parts_before(const MirrorRays &args, unsigned ray) {
     const unsigned pixel = pixel_of(args.rays, ray);
     unsigned sum = offset_of(args.rays, pixel);
     for (unsigned before = ray; before-- > 0 && pixel_of(args.rays, before) == pixel;)
         sum += args.thin[before];
-    const float least = least_thick(args.rays);
-    const Vec3 through = thinned(all.through, least, sum);
-    return Shares{through, thinned(all.mirrored, least, sum)};
+    return sum;
 }
 
 // The cone that the mirror at a surface point reflects.
-DEVICE Cone reflected_cone(const MirrorRays &args, unsigned ray, const Surface &surface) {
+DEVICE Cone reflected_cone(const MirrorRays &args, unsigned ray, const Mirror &mirror) {
     const Hit hit = load_hit(args.hits, ray);
     const Corners corners = corners_at(args.scene.triangles, hit.triangle);
     const Cone seen = cone_after(cone_of(args.rays, ray), hit.t);
-    const Cone cone = cone_reflected(seen, curvature(args.scene, hit, corners, surface.point.normal));
-    return surface.material->facets ? facets_blurred(cone, surface.material->roughness) : cone;
+    const Cone cone = cone_reflected(seen, curvature(args.scene, hit, corners, mirror.surface.point.normal));
+    const Material &material = *mirror.surface.material;
+    return material.facets ? facets_blurred(cone, material.roughness, mirror.count, max_element(weight_of(args.rays, ray))) : cone;
 }
 
-// How many of the threads of the block before this one have the first flag set and how many the second, together, and how many in all.
-DEVICE unsigned flags_before(bool first, bool second, unsigned &all) {
+// How many rays the threads of the block before this one have, and how many all.
+DEVICE unsigned rays_before(unsigned count, unsigned &all) {
     SHARED(unsigned, warps, [BLOCK / WARP]);
-    const unsigned lane = lane_of_thread(), warp = threadIdx.x / WARP;
-    const unsigned firsts = __ballot_sync(ALL_LANES, first), seconds = __ballot_sync(ALL_LANES, second);
-    if (lane == 0)
-        warps[warp] = __popc(firsts) + __popc(seconds);
+    const unsigned warp = threadIdx.x / WARP, upto = warp_running_sum(count);
+    if (lane_of_thread() == WARP - 1)
+        warps[warp] = upto;
     __syncthreads();
-    unsigned before = __popc(firsts & lanes_below(lane)) + __popc(seconds & lanes_below(lane));
+    unsigned before = upto - count;
     all = 0;
     for (unsigned other = 0; other < BLOCK / WARP; ++other) {
         before += other < warp ? warps[other] : 0;
@@ -106,42 +144,74 @@ KERNEL(mirror_rays_thin, MirrorRays, BLOCK, 4) {
         return;
     const Shares shares = all_shares_of(args, ray);
     const float least = least_thick(args.rays);
-    args.thin[ray] = part_of(shares.through, least) + part_of(shares.mirrored, least);
+    unsigned parts = part_of(shares.through, least);
+    Material own;
+    const Mirror mirror = mirror_at(args, ray, shares.mirrored, own);
+    for (unsigned number = 0; number < mirror.count; ++number)
+        parts += part_of(mirror_ray(args, ray, mirror, number).share, least);
+    args.thin[ray] = parts;
 }
 
 KERNEL(mirror_rays_count, MirrorRays, BLOCK, 4) {
-    const Shares shares = shares_of(args, blockIdx.x * BLOCK + threadIdx.x);
+    const unsigned ray = blockIdx.x * BLOCK + threadIdx.x;
+    const Shares shares = all_shares_of(args, ray);
+    const bool thins = args.thin != nullptr && ray < args.rays.count && args.thin[ray] != 0;
+    unsigned sum = thins ? parts_before(args, ray) : 0;
+    const float least = least_thick(args.rays);
+    const auto goes_on = [&](Vec3 share) { return (thins ? thinned(share, least, sum) : share) != splat(0.0f) ? 1u : 0u; };
+    unsigned count = goes_on(shares.through);
+    Material own;
+    const Mirror mirror = mirror_at(args, ray, shares.mirrored, own);
+    for (unsigned number = 0; number < mirror.count; ++number)
+        count += goes_on(mirror_ray(args, ray, mirror, number).share);
     unsigned all;
-    flags_before(shares.through != splat(0.0f), shares.mirrored != splat(0.0f), all);
+    rays_before(count, all);
     if (threadIdx.x == 0)
         args.counts[blockIdx.x] = all;
+    if (args.per_ray != nullptr && ray < args.rays.count)
+        args.per_ray[ray] = count;
 }
 
 KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
     const unsigned ray = blockIdx.x * BLOCK + threadIdx.x;
-    const Shares shares = shares_of(args, ray);
-    const bool goes = shares.through != splat(0.0f), returns = shares.mirrored != splat(0.0f);
+    const bool valid = ray < args.rays.count;
+    const unsigned count = valid ? args.per_ray[ray] : 0;
     unsigned all;
-    unsigned place = args.counts[blockIdx.x] + flags_before(goes, returns, all);
-    if (!goes && !returns)
+    unsigned place = args.counts[blockIdx.x] + rays_before(count, all);
+    if (count == 0)
         return;
-    Material own;
-    const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
+    const Shares shares = all_shares_of(args, ray);
+    const bool thins = args.thin != nullptr && args.thin[ray] != 0;
+    unsigned sum = thins ? parts_before(args, ray) : 0;
+    const float least = least_thick(args.rays);
+    const auto left_of = [&](Vec3 share) { return thins ? thinned(share, least, sum) : share; };
     const unsigned pixel = pixel_of(args.rays, ray), sample = sample_of(args.rays, ray);
+    Material own;
 
     // 1. Through the surface.
-    if (goes) {
+    const Vec3 through = left_of(shares.through);
+    if (through != splat(0.0f)) {
+        const Surface surface = surface_at(args.scene, args.rays, args.hits, ray, own);
         if (args.cones != nullptr)
             args.cones[place] = cone_after(cone_of(args.rays, ray), load_hit(args.hits, ray).t);
-        const unsigned through = sample + (1u << THROUGHS_SHIFT);
         const Ray beyond = onward(surface);
-        args.onward[place++] = ListedRay{beyond.origin, pixel, beyond.direction, through, shares.through, 0};
+        args.onward[place++] = ListedRay{beyond.origin, pixel, beyond.direction, sample + (1u << THROUGHS_SHIFT), through, 0};
     }
 
     // 2. Mirrored.
-    if (returns) {
+    const Mirror mirror = mirror_at(args, ray, shares.mirrored, own);
+    if (mirror.count == 0)
+        return;
+    const Material &material = *mirror.surface.material;
+    const unsigned faded = material.facets ? facets_faded(material.roughness) << FADE_SHIFT : 0;
+    const unsigned marked = (sample & ((1u << FADE_SHIFT) - 1)) | faded;
+    for (unsigned number = 0; number < mirror.count; ++number) {
+        const Drawn one = mirror_ray(args, ray, mirror, number);
+        const Vec3 share = left_of(one.share);
+        if (share == splat(0.0f))
+            continue;
         if (args.cones != nullptr)
-            args.cones[place] = reflected_cone(args, ray, surface);
-        args.onward[place] = ListedRay{surface.point.origin, pixel, normalize(mirrored(surface)), sample, shares.mirrored, 0};
+            args.cones[place] = reflected_cone(args, ray, mirror);
+        args.onward[place++] = ListedRay{mirror.surface.point.origin, pixel, one.direction, marked | number << DIRECTION_SHIFT, share, 0};
     }
 }

@@ -56,6 +56,9 @@ DEVICE bool is_level(const Facet &a, const Facet &b, float height) {
            fabsf(dot(b.point.normal, between)) <= height * b.width;
 }
 
+// Whether both look about the same where a rough mirror blurs them.
+DEVICE bool resembles(const Facet &a, const Facet &b) { return a.material == b.material && dot(a.smooth, b.smooth) >= NEAR_COSINE; }
+
 // Whether two samples of a pixel may be shaded together.
 DEVICE bool continues(const Facet &a, const Facet &b) {
     return dot(a.smooth, b.smooth) >= SAME_COSINE && dot(a.point.normal, b.point.normal) >= SAME_FACET_COSINE &&

@@ -55,6 +55,12 @@ impl Facet {
             && self.is_level(other, SAME_HEIGHT)
     }
 
+    /// Whether both look about the same where a rough mirror blurs them.
+    #[inline(always)]
+    pub(crate) fn resembles(&self, other: &Facet) -> bool {
+        self.material == other.material && self.smooth.dot(other.smooth) >= NEAR_COSINE
+    }
+
     /// Whether the surface of a neighbouring pixel may be compared.
     #[inline(always)]
     pub(crate) fn is_near(&self, other: &Facet) -> bool {

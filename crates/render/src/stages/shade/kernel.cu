@@ -57,7 +57,7 @@ DEVICE Vec3 missed(const Shade &args, unsigned ray) {
     const Environment &environment = args.scene.environment;
     if (environment.levels == nullptr || (environment.hidden && !is_mirrored(args.rays, ray)))
         return args.scene.background;
-    return environment_radiance(&environment, ray_at(args.rays, ray).direction, spread_of(args, ray));
+    return environment_radiance(&environment, ray_at(args.rays, ray).direction, spread_of(args, ray), lights_share(args.rays, ray));
 }
 
 // Whether a ray gets anything from the lights of this group.
@@ -70,10 +70,15 @@ DEVICE bool sees_any(const Shade &args, unsigned ray) {
 
 // What a surface shows without lights: ambient, or gathered, and emitted light.
 DEVICE Vec3 unlit(const Shade &args, unsigned ray, const Surface &surface) {
+    // Highlights show the rest of the light that stands for what it emits.
+    const float shown = lights_share(args.rays, ray);
+    Vec3 emission = surface.material->emission;
+    if (surface.material->lamp && shown < 1.0f)
+        emission = shown * emission;
     if (args.gathered == nullptr)
-        return alone(args.scene, surface, surface.material->ka);
+        return alone(args.scene, surface, surface.material->ka, emission);
     const float *gathered = &args.gathered[ray].x;
-    return Vec3{__ldg(gathered), __ldg(gathered + 1), __ldg(gathered + 2)} * surface.material->all + surface.material->emission;
+    return Vec3{__ldg(gathered), __ldg(gathered + 1), __ldg(gathered + 2)} * surface.material->all + emission;
 }
 
 // Formula (1) without its last term: the terms of a group of lights are added to those before.
@@ -123,7 +128,7 @@ DEVICE float lit_share(const Shade &args, const Surface &surface, Vec3 lit) {
     const float reach = scene_reach(args.scene, surface.point.origin);
     // Where nothing surrounds the scene, there is nothing to gather.
     const Vec3 reflected = args.gathered == nullptr ? surface.material->ka : args.scene.environment.lights ? surface.material->all : splat(0.0f);
-    Vec3 sum = alone(args.scene, surface, reflected);
+    Vec3 sum = alone(args.scene, surface, reflected, surface.material->emission);
     for (unsigned light = 0; light < args.scene.light_count; ++light)
         sum = sum + unshadowed(surface, args.scene, light, reach);
     const float alone = luminance(sum);

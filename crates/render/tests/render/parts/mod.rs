@@ -63,6 +63,7 @@ fn plain(size: [u32; 2], lights: LightGroups, left: Option<u64>) -> Plan {
         antialiasing: None,
         bounces: 0,
         lets_through: false,
+        directions: 1,
         coverage: false,
         caught: false,
         layers: None,

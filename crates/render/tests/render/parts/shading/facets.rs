@@ -117,3 +117,56 @@ fn a_wide_light_has_a_highlight_of_the_same_strength() {
     let (few, many) = (sum(3, 0.033), sum(60, 0.0));
     assert!((few / many - 1.0).abs() < 0.1, "{few}, not {many}");
 }
+
+/// What `drawn` shows of a sky whose radiance depends on the direction: the mean over many directions.
+fn drawn(lobe: &Lobe, eye: Vec3, sky: impl Fn(Vec3) -> f32) -> Vec3 {
+    const STEPS: u32 = 400;
+    let place = |index: u32| (index as f32 + 0.5) / STEPS as f32;
+    let all = (0..STEPS * STEPS).map(|index| lobe.drawn(Vec3::Z, eye, [place(index / STEPS), place(index % STEPS)]));
+    all.map(|(direction, share)| sky(direction) * share).sum::<Vec3>() / (STEPS * STEPS) as f32
+}
+
+#[test]
+fn mirror_rays_show_what_the_formula_does() {
+    let gold = Vec3::new(1.0, 0.77, 0.34);
+    // A panel that a highlight shows the middle and one side of.
+    let panel = |direction: Vec3| f32::from(direction.x < -0.45 && direction.y > -0.1);
+    for (roughness, cosine) in [(0.2, 0.8), (0.35, 0.5), (0.5, 0.8), (0.5, 0.2)] {
+        for metallic in [0.0, 1.0] {
+            let facets = Facets::new(roughness).with_metallic(metallic);
+            let mut seen = coefficients(gold, Vec3::splat(0.04));
+            let lobe = Lobe::new(&facets, &mut seen, &Sight { followed: true, ..sight(cosine) });
+            let eye = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+
+            let all = drawn(&lobe, eye, |_| 1.0);
+            assert!((all / seen.mirrored - 1.0).abs().max_element() < 0.02, "{facets:?}: {all}, not {}", seen.mirrored);
+
+            let steps = 600;
+            let step = std::f32::consts::FRAC_PI_2 / steps as f32;
+            let mut sum = glam::DVec3::ZERO;
+            for (i, j) in (0..steps).flat_map(|i| (0..4 * steps).map(move |j| (i, j))) {
+                let (sin, cos) = ((i as f32 + 0.5) * step).sin_cos();
+                let (y, x) = ((j as f32 + 0.5) * step).sin_cos();
+                let direction = Vec3::new(sin * x, sin * y, cos);
+                if panel(direction) > 0.0 {
+                    sum += (cos * sin * lobe.toward(Vec3::Z, eye, direction, 0.0)).as_dvec3();
+                }
+            }
+            let expected = (f64::from(step * step) / PI * sum).as_vec3();
+            let found = drawn(&lobe, eye, panel);
+            assert!(
+                (found / expected - 1.0).abs().max_element() < 0.03,
+                "{facets:?} {cosine}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn smooth_mirrors_reflect_one_way() {
+    let lobe = Lobe::new(&Facets::new(0.0), &mut coefficients(Vec3::ONE, Vec3::ONE), &sight(0.6));
+    for u in [[0.0, 0.0], [0.3, 0.99], [0.999, 0.5]] {
+        let (direction, _) = lobe.drawn(Vec3::Z, Vec3::new(0.8, 0.0, 0.6), u);
+        assert!(direction.distance(Vec3::new(-0.8, 0.0, 0.6)) < 1e-6, "{direction}");
+    }
+}
