@@ -11,7 +11,7 @@
 //! whatever the first ones saw. (Adaptive stratified sampling: Mitchell: *Generating Antialiased Images at Low Sampling Densities*, 1987.)
 
 use glam::Vec2;
-use lightmesh_layout::constants::{GUIDED, GUIDE_RING, LAST_DIGIT};
+use lightmesh_layout::constants::{GUIDE_RING, GUIDED, LAST_DIGIT};
 
 use super::rays::Fan;
 use crate::sampling::random_bits;

@@ -143,7 +143,7 @@ fn a_board_just_below_a_glowing_ball_hides_it_and_the_ball_does_not() {
             hidden += 1;
         }
     }
-    assert!(open > 100 && hidden > 100, "{open}, {hidden}");
+    assert!(open > 100 && hidden > 5, "{open}, {hidden}");
 }
 
 #[test]

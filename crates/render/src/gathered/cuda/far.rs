@@ -109,12 +109,8 @@ fn gather<R: Runtime>(
             ..TakeSites::zeroed()
         };
         let sites = taken(device, from, count)?;
-        let from = GuideFans {
-            fans: first_fans.record,
-            uneven: uneven.input(),
-            first: first as u32,
-            ..GuideFans::zeroed()
-        };
+        let from =
+            GuideFans { fans: first_fans.record, uneven: uneven.input(), first: first as u32, ..GuideFans::zeroed() };
         let guides = guides(device, from, fans, count)?;
         let more = seen(device, bounce, sites, fans[1], Some(&guides))?;
         let before = fans[0].len() as u32;
