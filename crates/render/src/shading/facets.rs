@@ -102,7 +102,7 @@ impl Lobe {
     }
 
     /// 6. The direction in which the facets that `u` in [0, 1)² selects reflect the view, and the share of the radiance there that the eye sees; zero
-    /// where they reflect it into the surface. The mean over all u is what is mirrored.
+    ///    where they reflect it into the surface. The mean over all u is what is mirrored.
     pub fn drawn(&self, normal: Vec3, view: Vec3, u: [f32; 2]) -> (Vec3, Vec3) {
         // Along the surface to the eye, and across.
         let slope = view - normal.dot(view) * normal;

@@ -120,7 +120,6 @@ impl<R: Runtime> DeviceFans<R> {
             is_near: u32::from(reach.is_finite()),
             lamps: u32::from(wave.scene.host.has_lamps()),
             blocks: guides.map_or(0, |guides| guides.blocks),
-            ..Record::zeroed()
         };
         device.warps("cast_fans", count, &record)?;
         device.tracing(TRACE, rays, &record)?;
