@@ -43,7 +43,8 @@ DEVICE void add_name(const Names &names, const Name &name) {
             if (found == name.key)
                 return;
             if (found == 0) {
-                const unsigned number = atomicAdd(names.count, 1u);
+                // Also in a table that others abandoned meanwhile: what is counted moves to the larger one.
+                const unsigned number = atomicAdd(names.count, 1u) & ~FULL_TABLE;
                 names.numbers[slot] = number;
                 if (number < names.room)
                     names.names[number] = name;
