@@ -22,7 +22,8 @@ use lightmesh_layout::constants::{BOUNCE_FINER, BOUNCE_SIDE, ORDERS as MOST_ORDE
 use rayon::prelude::*;
 
 use super::cells::{Asked, CellHasher, KIND_BITS, NAME_BITS, Site, nearest_of_kind};
-use super::rays::{Fan, Seen, Spot, brightness};
+use super::fan::Fan;
+use super::rays::{Seen, Spot, brightness};
 use super::scene::Scene;
 use crate::shading::luminance;
 use crate::stages::primary_rays::cpu::batch;

@@ -6,9 +6,10 @@ use rayon::prelude::*;
 
 use super::bounce::Bounce;
 use super::cells::{Cells, Site, size_of_level};
+use super::fan::Fan;
 use super::guide::Guides;
 use super::light::{Bins, Light};
-use super::rays::{Cast, Fan};
+use super::rays::Cast;
 use super::scene::Scene;
 
 /// What a coarse site gathers.

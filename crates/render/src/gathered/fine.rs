@@ -14,10 +14,11 @@ use rayon::prelude::*;
 use super::bounce::Bounce;
 use super::cells::{Cells, Site, size_of_level};
 use super::directions::bin;
+use super::fan::Fans;
 use super::far::{self, Far};
 use super::light::Light;
 use super::lookup::{Link, Links, Place};
-use super::rays::{Cast, Fans};
+use super::rays::Cast;
 use super::scene::Scene;
 use crate::accel::Hit;
 

@@ -13,7 +13,7 @@
 use glam::Vec2;
 use lightmesh_layout::constants::{GUIDE_RING, GUIDED, LAST_DIGIT};
 
-use super::rays::Fan;
+use super::fan::Fan;
 use crate::sampling::random_bits;
 
 /// How many rays go into each block, for some sites.

@@ -14,6 +14,7 @@ mod bounce;
 mod cells;
 pub(crate) mod cuda;
 pub(crate) mod directions;
+mod fan;
 mod far;
 mod fine;
 mod guide;
@@ -39,11 +40,11 @@ use crate::surface::SurfacePoint;
 use crate::view::View;
 use bounce::Bounce;
 use cells::{Cells, Site, level_of};
+use fan::{Fan, Fans};
 use far::Far;
 use fine::Coarse;
 use light::Light;
 use lookup::{Links, Place};
-use rays::{Fan, Fans};
 use scene::Scene;
 
 /// Surface points that are processed at once.

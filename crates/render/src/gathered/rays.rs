@@ -1,14 +1,13 @@
 //! Gather rays: their directions, and what they see.
 
-use std::f32::consts::PI;
-
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use lightmesh_layout::constants::{BOUNCE_SIZE, BRIGHT, CHOSEN_LIGHTS, LAST_DIGIT, SKY_CONE};
 use lightmesh_scene::{Light, LightKind};
 use rayon::prelude::*;
 
 use super::cells::{Kind, Site, kind_of, level_of, outward};
 use super::directions::{above, basis};
+use super::fan::Fan;
 use super::guide::Guides;
 use super::lookup::Place;
 use super::scene::Scene;
@@ -17,7 +16,6 @@ use crate::counters::Tally;
 use crate::data::lights::LightGroup;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
-use crate::footprint::Cone;
 use crate::job::Sampling;
 use crate::sampling::{light_center, random_bits};
 use crate::shading::environment::surroundings;
@@ -25,53 +23,6 @@ use crate::shading::{LightTargets, Surface, falloff, luminance, material_of};
 use crate::shadow::{Aim, Targets, hidden, shadow_segment, size};
 use crate::stages::primary_rays::cpu::{batch, closest_hits};
 use crate::surface::SurfacePoint;
-
-/// The rays of one site: `side`² directions, one in each part of the hemisphere.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fan {
-    side: u32,
-}
-
-impl Fan {
-    pub(super) const fn new(side: u32) -> Fan {
-        Fan { side }
-    }
-
-    /// The side of the square that they form.
-    pub(super) fn side(self) -> u32 {
-        self.side
-    }
-
-    /// Number of rays.
-    pub(super) fn len(self) -> usize {
-        (self.side * self.side) as usize
-    }
-
-    /// The cone around each ray: together they fill the hemisphere.
-    pub(super) fn cone(self) -> Cone {
-        Cone { width: 0.0, spread: (2.0 * PI).sqrt() / self.side as f32 }
-    }
-
-    /// Where ray number `index` lies in the square [−1, 1]².
-    fn place(self, seed: u64, index: u32) -> Vec2 {
-        let random = random_bits(seed, u64::from(index), self.side as usize);
-        let place = |part: u32, bits: u32| {
-            let within = (bits >> 8) as f32 * (1.0 / (1 << 24) as f32);
-            2.0 * (part as f32 + within) / self.side as f32 - 1.0
-        };
-        let (column, row) = (index % self.side, index / self.side);
-        Vec2::new(place(column, random as u32), place(row, (random >> 32) as u32))
-    }
-}
-
-/// The rays of sites.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fans {
-    /// Those of coarse sites, and of points that see none: at first, and where these see different things.
-    pub(super) far: [Fan; 2],
-    /// Those of fine sites.
-    pub(super) near: Fan,
-}
 
 /// Rays from some sites, fan by fan, with what they hit.
 pub(super) struct Cast {

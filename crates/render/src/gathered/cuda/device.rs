@@ -5,7 +5,7 @@ use lightmesh_layout::constants::{BLOCK, FOUND_TRIANGLES, WARP};
 
 use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
-use crate::gathered::rays::Fan;
+use crate::gathered::fan::Fan;
 use crate::gpu::rays::DeviceWave;
 use crate::gpu::{Cuda, PerStructure, blocks_for, warps_for};
 

@@ -8,8 +8,8 @@ use lightmesh_layout::{In, Out};
 use super::device::Device;
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
+use crate::gathered::fan::Fan;
 use crate::gathered::guide::blocks;
-use crate::gathered::rays::Fan;
 use crate::gpu::{PerStructure, per_structure, sampling};
 use crate::job::Sampling;
 

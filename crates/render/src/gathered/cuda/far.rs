@@ -12,7 +12,7 @@ use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Guides, Sites, guides, taken};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
-use crate::gathered::rays::Fan;
+use crate::gathered::fan::Fan;
 use crate::gpu::Cuda;
 
 /// What coarse sites gather, by the number of its value.

@@ -14,7 +14,7 @@ use super::fans::{DeviceFans, Sites, taken};
 use super::far::{self, DeviceFar};
 use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
-use crate::gathered::rays::Fans;
+use crate::gathered::fan::Fans;
 use crate::gpu::Cuda;
 
 /// What fine sites receive, by the number of its value.
