@@ -254,7 +254,7 @@ pub(crate) struct ImageArgs {
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ExposureArgs {
     /// Brighten 8-bit and 16-bit files by this many stops; auto suits any light; exr stays linear [default: auto with
-    /// photometric lights and in interiors under --sky, by what is bright on its ground, else 0]
+    /// photometric lights, by what is seen under --sky, else 0]
     #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, help_heading = "Image")]
     pub(crate) exposure: Option<Exposure>,
 }

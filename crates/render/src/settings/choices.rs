@@ -297,8 +297,8 @@ parse_by_name!(Filter, "filter");
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AmbientSource {
-    /// The mesh where an environment gives the ambient light, or all lights are lamps, or the program put one into a room, unless ambient light is set or these are the lights of a
-    /// [studio](lightmesh_scene::Lighting::Studio); else a constant.
+    /// The mesh where an environment gives the ambient light, or all lights are lamps, or the program put one into a room, unless ambient light is set or
+    /// these are the lights of a [studio](lightmesh_scene::Lighting::Studio); else a constant.
     #[default]
     Auto,
     /// A constant, or what a sky gives to surfaces with nothing in between.
