@@ -322,9 +322,11 @@ fn a_cache_under_a_limit_keeps_what_was_used_last() {
         let mut kept = Kept::default();
         let (mut saved, mut most, mut peak, notes) = (0, 0, 0, Notes::default());
         let base = scene.scene.default_camera(Up::Y);
-        let (right, ..) = base.basis();
+        let (right, _, forward) = base.basis();
         for frame in 0..12 {
-            let camera = base.clone().with_position(base.position + 0.15 * frame as f32 * right);
+            // From so far that half of a cache holds what an image needs.
+            let position = base.position - forward + 0.15 * frame as f32 * right;
+            let camera = base.clone().with_position(position);
             let mut settings = settings().with_size([50, 40]).with_step(Step::Fixed(0.04)).with_camera(camera);
             settings.memory_limit = limit;
             let with = render_on_with(&cuda, &mut kept, &scene, &settings, &notes).unwrap();
