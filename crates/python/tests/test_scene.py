@@ -153,8 +153,9 @@ def test_small_surfaces_that_shine_are_lamps(renderer):
     settings = {"size": (40, 30), "ambient_light": "mesh", "layers": True}
     lamp = renderer.render(scene, **settings)
     assert len(lamp.visibility) == 1
-    # The reference casts thousands of rays from each point, at surfaces that lamps do not stand for.
-    expected = renderer.render(Scene([floor(), panel()], [], view, lamps=False), size=(40, 30), ambient_light="rays").rgb
+    # The reference casts thousands of rays from each point, at surfaces that lamps do not stand for. Few hit the panel: the mean of several seeds.
+    plain = Scene([floor(), panel()], [], view, lamps=False)
+    expected = np.mean([renderer.render(plain, size=(40, 30), ambient_light="rays", seed=seed).rgb for seed in range(4)], axis=0)
     np.testing.assert_allclose(lamp.rgb[-5:].mean(), expected[-5:].mean(), rtol=0.05)
     scene.lights = [Light.point((0.0, 3.0, 0.0), intensity=0.0)]
     scene.environment = Environment(np.zeros((8, 16, 3), np.float32))
