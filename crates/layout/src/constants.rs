@@ -570,6 +570,8 @@ constants! {
     EVEN: f32 = 0.45;
     /// This share of a site's second rays goes where its first ones see different things; the rest goes everywhere.
     GUIDED: f32 = 0.5;
+    /// First rays along each side of a block of directions.
+    GUIDE_BLOCK: u32 = 2;
     /// How many rays beside a block tell how different what is seen in it is.
     GUIDE_RING: u32 = 1;
     /// A site's first ray counts as much as this many of its second ones, which go where they are needed.

@@ -120,8 +120,18 @@ DEVICE Vec3 before_body(const Light &light, Vec3 from, Vec3 target) {
     return along > near ? from + near / along * to : target;
 }
 
+// The centre of what is seen of a light from `from`, if a directional one is `reach` away: shadow rays end in a plane through it.
+DEVICE Vec3 seen_center(const Light &light, Vec3 from, float reach) { return before_body(light, from, light_center(light, from, reach)); }
+
 // The radius of the disc that an emissive ball of the radius `body` covers in that plane, at the distance `near`.
 DEVICE float covered_by_body(float body, float near) { return body * sqrtf(near / (near + 2.0f * body)); }
+
+// The radius of a light's disc. `center` is the way to its middle.
+DEVICE float disc_radius(const Light &light, Vec3 center, float reach) {
+    if (light.kind == Light::DIRECTIONAL)
+        return reach * light.radius;
+    return light.body > 0.0f ? covered_by_body(light.body, length(center)) : light.radius;
+}
 
 // The distance of a directional light from `from`: twin of prepared.rs.
 DEVICE float scene_reach(const Scene &scene, Vec3 from) {

@@ -213,6 +213,12 @@ pub(crate) fn before_body(light: &Light, from: Vec3, target: Vec3) -> Vec3 {
     if along > near { from + near / along * to } else { target }
 }
 
+/// The centre of what is seen of a light from `from`, if a directional one is `reach` away: shadow rays end in a plane through it.
+#[inline(always)]
+pub(crate) fn seen_center(light: &Light, from: Vec3, reach: f32) -> Vec3 {
+    before_body(light, from, light_center(light, from, reach))
+}
+
 /// The radius of the disc that an emissive ball of the radius `body` covers in that plane, at the distance `near`.
 #[inline(always)]
 pub(crate) fn covered_by_body(body: f32, near: f32) -> f32 {

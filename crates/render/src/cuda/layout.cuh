@@ -448,6 +448,8 @@
 #define EVEN 0x1.ccccccp-2f
 // This share of a site's second rays goes where its first ones see different things; the rest goes everywhere.
 #define GUIDED 0x1p-1f
+// First rays along each side of a block of directions.
+#define GUIDE_BLOCK 2u
 // How many rays beside a block tell how different what is seen in it is.
 #define GUIDE_RING 1u
 // A site's first ray counts as much as this many of its second ones, which go where they are needed.

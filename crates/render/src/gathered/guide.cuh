@@ -5,14 +5,23 @@
 #include "sampling.cuh"
 #include "shading/shading.cuh"
 
+// The first rays along one axis that tell of a block, from the first one to before the end: its own and those next to it.
+struct RaysAround {
+    unsigned first, end;
+};
+
+DEVICE RaysAround rays_around(unsigned block, unsigned side) {
+    const unsigned first = GUIDE_BLOCK * block;
+    return RaysAround{first - min(first, GUIDE_RING), min(first + GUIDE_BLOCK + GUIDE_RING, side)};
+}
+
 // The standard deviation of what the first rays of a site saw in a block and next to it: luminance times weight.
 DEVICE float deviation(const Fans &fans, unsigned site, unsigned column, unsigned row) {
     const unsigned side = fans.side, start = site * side * side;
-    const unsigned left = 2 * column - (2 * column < GUIDE_RING ? 2 * column : GUIDE_RING), right = min(2 * column + 2 + GUIDE_RING, side);
-    const unsigned top = 2 * row - (2 * row < GUIDE_RING ? 2 * row : GUIDE_RING), bottom = min(2 * row + 2 + GUIDE_RING, side);
+    const RaysAround columns = rays_around(column, side), rows = rays_around(row, side);
     float sum = 0.0f, square = 0.0f, count = 0.0f;
-    for (unsigned y = top; y < bottom; ++y)
-        for (unsigned x = left; x < right; ++x) {
+    for (unsigned y = rows.first; y < rows.end; ++y)
+        for (unsigned x = columns.first; x < columns.end; ++x) {
             const unsigned ray = start + y * side + x;
             const float value = fans.weights[ray] * luminance(fans.seen[ray].radiance);
             sum += value;
@@ -26,7 +35,7 @@ DEVICE float deviation(const Fans &fans, unsigned site, unsigned column, unsigne
 // The rays of a fan for each block of a site, whose first rays have seen something. One warp.
 DEVICE void guide_site(const GuideFans &args, unsigned number) {
     const unsigned site = args.uneven[args.first + number], lane = lane_of_thread();
-    const unsigned blocks = args.fans.side / 2, count = blocks * blocks;
+    const unsigned blocks = args.fans.side / GUIDE_BLOCK, count = blocks * blocks;
     // In the order of the blocks.
     float total = 0.0f;
     for (unsigned first = 0; first < count; first += WARP) {

@@ -11,7 +11,7 @@
 //! whatever the first ones saw. (Adaptive stratified sampling: Mitchell: *Generating Antialiased Images at Low Sampling Densities*, 1987.)
 
 use glam::Vec2;
-use lightmesh_layout::constants::{GUIDE_RING, GUIDED, LAST_DIGIT};
+use lightmesh_layout::constants::{GUIDE_BLOCK, GUIDE_RING, GUIDED, LAST_DIGIT};
 
 use super::fan::Fan;
 use crate::sampling::random_bits;
@@ -33,7 +33,7 @@ pub(super) struct Guide<'a> {
 
 /// Blocks along each side of the square of a fan's rays.
 pub(super) fn blocks(first: Fan) -> u32 {
-    first.side() / 2
+    first.side() / GUIDE_BLOCK
 }
 
 impl Guides {
@@ -45,13 +45,14 @@ impl Guides {
     /// Adds a site: the rays of a fan for it, by what each of the first ones saw, luminance times weight, row by row.
     pub(super) fn add(&mut self, first: Fan, fan: Fan, seen: &[f32]) {
         let count = self.blocks * self.blocks;
-        let deviation = |block| deviation(seen, first.side(), block % self.blocks, block / self.blocks);
-        let total = (0..count).map(deviation).fold(0.0, |total, deviation| total + deviation);
+        let of_block = |block| deviation(seen, first.side(), block % self.blocks, block / self.blocks);
+        let deviations: Vec<f32> = (0..count).map(of_block).collect();
+        let total = deviations.iter().fold(0.0, |total, deviation| total + deviation);
         let (guided, even) = if total > 0.0 { (GUIDED / total, 1.0 - GUIDED) } else { (0.0, 1.0) };
         let mut share = 0.0;
-        for block in 0..count {
-            share += even / count as f32 + guided * deviation(block);
-            let end = if block + 1 < count { (share * fan.len() as f32) as u32 } else { fan.len() as u32 };
+        for (block, deviation) in (1..).zip(deviations) {
+            share += even / count as f32 + guided * deviation;
+            let end = if block < count { (share * fan.len() as f32) as u32 } else { fan.len() as u32 };
             self.ends.push(end);
         }
     }
@@ -65,7 +66,9 @@ impl Guides {
 
 /// The standard deviation of what the first rays saw in a block and next to it.
 fn deviation(seen: &[f32], side: u32, column: u32, row: u32) -> f32 {
-    let around = |block: u32| (2 * block).saturating_sub(GUIDE_RING)..(2 * block + 2 + GUIDE_RING).min(side);
+    let around = |block: u32| {
+        (GUIDE_BLOCK * block).saturating_sub(GUIDE_RING)..(GUIDE_BLOCK * (block + 1) + GUIDE_RING).min(side)
+    };
     let (mut sum, mut square, mut count) = (0.0, 0.0, 0.0);
     for y in around(row) {
         for x in around(column) {

@@ -79,8 +79,7 @@ DEVICE void disc_sight(Sight &sight, const Light &light, Vec3 center, float reac
         facing(center, tangent, bitangent);
     const float square = turn * turn;
     const float cosine = (1.0f - square) / (1.0f + square), sine = 2.0f * turn / (1.0f + square);
-    const float disc = light.body > 0.0f ? covered_by_body(light.body, length(center)) : light.radius;
-    const float radius = light.scale * (light.kind == Light::DIRECTIONAL ? reach * light.radius : disc);
+    const float radius = light.scale * disc_radius(light, center, reach);
     sight.along = radius * (cosine * tangent + sine * bitangent);
     sight.across = radius * (cosine * bitangent - sine * tangent);
     if (lines == 1) {
@@ -95,7 +94,7 @@ DEVICE Sight sight_of(const Scene &scene, const Sampling &sampling, unsigned ind
                       const SurfacePoint &point, unsigned long long key) {
     const Light &light = scene.lights[index];
     const float reach = scene_reach(scene, point.origin);
-    const Vec3 target = before_body(light, point.origin, light_center(light, point.origin, reach));
+    const Vec3 target = seen_center(light, point.origin, reach);
     const Vec3 center = target - point.origin;
     const float length = max_element(abs(center));
     const float error = GAMMA_32 * max_element(max(abs(point.origin), abs(target)));

@@ -2,7 +2,7 @@
 //! `sight.cuh`.
 //!
 //! Seen from a point, a ball is the disc through its centre that faces the point, evenly bright; so is a point light with a spread, and a
-//! sun of an angular size. An emissive ball is the disc that covers the same directions [before it](before_body): it hides none of its own light.
+//! sun of an angular size. An emissive ball is the disc that covers the same directions [before it](crate::sampling::before_body): it hides none of its own light.
 //! Disks and rectangles are what they are. A light without a size is a single sample.
 //!
 //! All vectors are multiplied by a power of two, [`scale`], so that products with triangles, three lengths each, stay in the middle of
@@ -21,7 +21,7 @@ use super::terminator::ShadowPoint;
 use crate::accel::Region;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
-use crate::sampling::{before_body, body, covered_by_body, disk_radius, light_center, random_bits};
+use crate::sampling::{body, covered_by_body, disk_radius, light_center, random_bits, seen_center};
 use crate::simd::{Axes, difference, dot, scaled, splat};
 use crate::surface::SurfacePoint;
 
@@ -162,8 +162,7 @@ impl<'a> Emitter<'a> {
         mut take: impl FnMut(u32, Vec3),
     ) {
         if self.is_point() {
-            let center = light_center(self.light, point.origin, wave.scene.geometry.reach(point.origin));
-            take(0, before_body(self.light, point.origin, center));
+            take(0, seen_center(self.light, point.origin, wave.scene.geometry.reach(point.origin)));
             return;
         }
         let sight = self.sight(wave, ray, point);
@@ -293,7 +292,7 @@ impl Sight {
         (seed, key): (u64, u64),
         (reach, scale): (f32, f32),
     ) -> Sight {
-        let target = before_body(light, point.origin, light_center(light, point.origin, reach));
+        let target = seen_center(light, point.origin, reach);
         let center = target - point.origin;
         // As for rays: see `long_segment`.
         let length = center.abs().max_element();

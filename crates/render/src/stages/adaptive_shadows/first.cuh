@@ -17,14 +17,13 @@ struct Extent {
 
 DEVICE Extent extent_of(const Scene &scene, const Light &light, Shape shape, const SurfacePoint &point) {
     const float reach = scene_reach(scene, point.origin);
-    const Vec3 center = before_body(light, point.origin, light_center(light, point.origin, reach)) - point.origin;
+    const Vec3 center = seen_center(light, point.origin, reach) - point.origin;
     if (shape == SHAPE_RECTANGLE)
         return Extent{shape, center, light.half_u, light.half_v};
     Vec3 tangent = light.half_u, bitangent = light.half_v;
     if (light.kind == Light::POINT || light.kind == Light::SPHERE)
         facing(center, tangent, bitangent);
-    const float disc = light.body > 0.0f ? covered_by_body(light.body, length(center)) : light.radius;
-    const float radius = light.kind == Light::DIRECTIONAL ? reach * light.radius : disc;
+    const float radius = disc_radius(light, center, reach);
     return Extent{shape, center, radius * tangent, radius * bitangent};
 }
 

@@ -4,7 +4,7 @@ use glam::Vec3;
 use lightmesh_layout::constants::{ANSWER_STRADDLES, AROUND, FIRST_TARGETS, NEIGHBORHOOD};
 use lightmesh_scene::{Light, LightKind};
 
-use crate::sampling::{before_body, light_center};
+use crate::sampling::seen_center;
 use crate::shadow::Aim;
 use crate::shadow::sight::{Emitter, Shape, disc_of};
 use crate::surface::SurfacePoint;
@@ -52,7 +52,7 @@ impl Extent {
     #[inline(always)]
     pub(super) fn new(emitter: &Emitter, point: &SurfacePoint, reach: f32) -> Extent {
         let (light, shape) = emitter.light();
-        let center = before_body(light, point.origin, light_center(light, point.origin, reach)) - point.origin;
+        let center = seen_center(light, point.origin, reach) - point.origin;
         let (u, v) = match light.kind {
             LightKind::Rectangle { half_u, half_v, .. } => (half_u, half_v),
             _ => {

@@ -77,7 +77,7 @@ DEVICE void each_target(const Filters &args, const SurfacePoint &point, unsigned
     const Shadows &shadows = args.shadows;
     const Light &light = shadows.scene.lights[shadows.first_light];
     if (shape == SHAPE_POINT) {
-        take(before_body(light, point.origin, light_center(light, point.origin, scene_reach(shadows.scene, point.origin))));
+        take(seen_center(light, point.origin, scene_reach(shadows.scene, point.origin)));
         return;
     }
     const SampleRows &set = shadows.sets[shape];
