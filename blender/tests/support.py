@@ -219,14 +219,14 @@ def lightmesh() -> Picture:
     return picture("LIGHTMESH")
 
 
-def cycles(samples: int = SAMPLES, bounces: int = 0) -> Picture:
-    """Cycles' picture: of direct light only, unless `bounces` of diffuse light are wanted."""
+def cycles(samples: int = SAMPLES, bounces: int = 0, mirrors: int = 0) -> Picture:
+    """Cycles' picture: of direct light only, unless `bounces` of diffuse light or `mirrors`, bounces of glossy light, are wanted."""
     settings = bpy.context.scene.cycles
     settings.device = "CPU"
     settings.samples = samples
     settings.use_denoising = settings.use_adaptive_sampling = False
-    settings.max_bounces = settings.diffuse_bounces = bounces
-    settings.glossy_bounces = settings.transmission_bounces = 0
+    settings.max_bounces = max(bounces, mirrors)
+    settings.diffuse_bounces, settings.glossy_bounces, settings.transmission_bounces = bounces, mirrors, 0
     settings.sample_clamp_indirect = 0.0
     settings.pixel_filter_type = "BOX"
     settings.blur_glossy = 0.0
