@@ -254,6 +254,8 @@ constants! {
     DIRECTION_SHIFT: u32 = 17;
     /// Stands for a light in the random pattern of the directions of a pixel's mirror rays.
     LOBE_PATTERN: u32 = 0x7fff_fffe;
+    /// Those of a square of so many pixels along each side are one pattern.
+    LOBE_TILE: u32 = 256;
     /// Half of the part of a light that one of its points stands for, as a share of its size.
     PART_OF_LIGHT: f32 = 0.35;
     /// Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).

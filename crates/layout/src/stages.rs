@@ -342,6 +342,8 @@ records! {
         per_ray: Out<u32>,
         /// Random pattern.
         seed: u64,
+        /// Samples of a pixel at most, as a power of two.
+        pixel_samples: u64,
         /// The rays that go on, in the order of the rays: of each first the one that goes through, then those that are mirrored.
         onward: Out<ListedRay>,
         /// Their cones; null if textures are not filtered.

@@ -46,6 +46,8 @@ pub struct Job<'a> {
     pub short_tests: ShortTests,
     /// How the samples of lights are tested.
     pub shadow_tests: ShadowTests,
+    /// Samples of a pixel, at most.
+    pub pixel_samples: u32,
     /// The counts so far.
     pub tally: Tally,
     /// How much is done.
@@ -66,6 +68,7 @@ impl<'a> Job<'a> {
             sampling,
             short_tests,
             shadow_tests,
+            pixel_samples: 1,
             tally,
             work,
             seconds: Mutex::default(),
@@ -81,6 +84,11 @@ impl<'a> Job<'a> {
     /// The same with another test of the samples of lights.
     pub fn with_shadow_tests(self, shadow_tests: ShadowTests) -> Job<'a> {
         Job { shadow_tests, ..self }
+    }
+
+    /// The same with so many samples of a pixel.
+    pub fn with_pixel_samples(self, pixel_samples: u32) -> Job<'a> {
+        Job { pixel_samples, ..self }
     }
 
     /// Does a piece of the current stage's work, and reports that `pieces` more are done. Does nothing if the observer has requested

@@ -159,6 +159,8 @@
 #define DIRECTION_SHIFT 17u
 // Stands for a light in the random pattern of the directions of a pixel's mirror rays.
 #define LOBE_PATTERN 0x7ffffffeu
+// Those of a square of so many pixels along each side are one pattern.
+#define LOBE_TILE 256u
 // Half of the part of a light that one of its points stands for, as a share of its size.
 #define PART_OF_LIGHT 0x1.666666p-2f
 // Share of each channel in the brightness of a colour (ITU-R BT.709-6, item 3.2).
@@ -2004,10 +2006,11 @@ struct alignas(8) MirrorRays {
     unsigned *thin;
     unsigned *per_ray;
     unsigned long long seed;
+    unsigned long long pixel_samples;
     ListedRay *onward;
     Cone *cones;
 };
-static_assert(sizeof(MirrorRays) == 856, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 864, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
 static_assert(PLACE_OF(MirrorRays, rays) == 680, "place of MirrorRays::rays");
 static_assert(PLACE_OF(MirrorRays, hits) == 800, "place of MirrorRays::hits");
@@ -2015,8 +2018,9 @@ static_assert(PLACE_OF(MirrorRays, counts) == 808, "place of MirrorRays::counts"
 static_assert(PLACE_OF(MirrorRays, thin) == 816, "place of MirrorRays::thin");
 static_assert(PLACE_OF(MirrorRays, per_ray) == 824, "place of MirrorRays::per_ray");
 static_assert(PLACE_OF(MirrorRays, seed) == 832, "place of MirrorRays::seed");
-static_assert(PLACE_OF(MirrorRays, onward) == 840, "place of MirrorRays::onward");
-static_assert(PLACE_OF(MirrorRays, cones) == 848, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, pixel_samples) == 840, "place of MirrorRays::pixel_samples");
+static_assert(PLACE_OF(MirrorRays, onward) == 848, "place of MirrorRays::onward");
+static_assert(PLACE_OF(MirrorRays, cones) == 856, "place of MirrorRays::cones");
 
 struct alignas(8) MergedRays {
     Scene scene;

@@ -105,14 +105,15 @@ DEVICE float lights_share(const Rays &rays, unsigned ray) {
     return 1.0f - (float)(sample_of(rays, ray) >> FADE_SHIFT) / (float)PARTS_OF_FADE;
 }
 
-// The number of the pixel's sample that a ray goes through.
-DEVICE unsigned sample_index(const Rays &rays, unsigned ray) {
-    const unsigned sample = sample_of(rays, ray) & ((1u << DIRECTION_SHIFT) - 1);
-    return sample > 0 ? sample - 1 : 0;
-}
-
 // Whether a mirror reflected a ray.
 DEVICE bool is_mirrored(const Rays &rays, unsigned ray) { return rays.depth > throughs_of(rays, ray); }
+
+// The number of a ray among those of its pixel: by the pixel's sample that it goes through, then by its direction from a rough mirror.
+DEVICE unsigned number_in_pixel(const Rays &rays, unsigned ray) {
+    const unsigned one = sample_of(rays, ray) & ((1u << DIRECTION_SHIFT) - 1), sample = one > 0 ? one - 1 : 0;
+    const unsigned direction = sample_of(rays, ray) >> DIRECTION_SHIFT & (MOST_DIRECTIONS - 1);
+    return is_mirrored(rays, ray) ? sample * MOST_DIRECTIONS + direction : sample;
+}
 
 // The key that distinguishes the random patterns of two surface points: the pixel, its sample, the surfaces on the way that let it through, and
 // whether it is in a list, such as that of mirror rays.

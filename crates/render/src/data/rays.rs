@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use lightmesh_layout::constants::{DIRECTION_SHIFT, FADE_SHIFT, PARTS_OF_FADE, THROUGHS_MASK, THROUGHS_SHIFT};
+use lightmesh_layout::constants::{
+    DIRECTION_SHIFT, FADE_SHIFT, MOST_DIRECTIONS, PARTS_OF_FADE, THROUGHS_MASK, THROUGHS_SHIFT,
+};
 
 use crate::accel::{Hit, Ray, Triangle};
 use crate::antialiasing::Antialiasing;
@@ -88,9 +90,11 @@ impl RayList {
         self.sample(ray) >> THROUGHS_SHIFT & THROUGHS_MASK
     }
 
-    /// The number of the pixel's sample that a ray goes through.
-    pub(crate) fn sample_index(&self, ray: usize) -> u32 {
-        (self.sample(ray) & ((1 << DIRECTION_SHIFT) - 1)).saturating_sub(1)
+    /// The number of a ray among those of its pixel: by the pixel's sample that it goes through, then by its direction from a rough mirror.
+    pub(crate) fn number_in_pixel(&self, ray: usize) -> u32 {
+        let sample = (self.sample(ray) & ((1 << DIRECTION_SHIFT) - 1)).saturating_sub(1);
+        let direction = self.sample(ray) >> DIRECTION_SHIFT & (MOST_DIRECTIONS - 1);
+        if self.is_mirrored(ray) { sample * MOST_DIRECTIONS + direction } else { sample }
     }
 
     /// The same as [`sample`](RayList::sample), of a ray that shows all of lights.

@@ -138,6 +138,7 @@ impl Resolved<'_> {
         Job::new(observer, self.sampling)
             .with_short_tests(self.settings.short_tests)
             .with_shadow_tests(self.settings.shadow_tests)
+            .with_pixel_samples(self.plan.antialiasing.as_ref().map_or(1, |all| all.samples))
     }
 }
 

@@ -101,3 +101,19 @@ fn a_light_is_as_bright_in_a_rough_floor_whether_rays_or_highlights_show_it() {
         assert!((mean / right - 1.0).abs() < 0.08, "{roughness}: {mean}, not {right}");
     }
 }
+
+/// Deviations of neighbours cancel, more than those of independent pixels, whose means of 16 deviate by a quarter.
+#[test]
+fn neighbouring_pixels_err_in_different_directions() {
+    for (roughness, aa) in [(0.2, 4), (0.35, 4), (0.5, 16)] {
+        let frame = spot(&floor(roughness), aa);
+        let [mean, single] = spread(&frame);
+        let block = |column: usize, row: usize| {
+            let pixels = (0..16).map(|index| (4 * row + index / 4) * 24 + 4 * column + index % 4);
+            pixels.map(|pixel| frame.color()[pixel][0]).sum::<f32>() / 16.0
+        };
+        let blocks = (0..36).map(|index| (block(index % 6, index / 6) - mean).powi(2));
+        let together = (blocks.sum::<f32>() / 36.0).sqrt();
+        assert!(together < 0.18 * single, "{roughness}: {together} of {single}");
+    }
+}

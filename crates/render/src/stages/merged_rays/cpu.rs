@@ -78,18 +78,23 @@ fn part_of(wave: &HostWave, seen: &SeenLights, first: usize, run: &Range<usize>,
         Facet::new(scene, &list.rays[ray], &wave.hits[ray], width)
     };
     let own = facet(first);
+    let is_blurred = list.lights_share(first) < 1.0;
     let is_alike = |other: usize| {
         let is_taken = taken >> (other - run.start) & 1 != 0;
         if is_taken || !may_merge(other) {
             return false;
         }
-        let is_blurred = list.lights_share(first) < 1.0 && list.lights_share(other) < 1.0;
-        let is_like = |other: Facet| own.continues(&other) || is_blurred && own.resembles(&other);
+        let are_blurred = is_blurred && list.lights_share(other) < 1.0;
+        let is_like = |seen: Facet| own.continues(&seen) || are_blurred && own.resembles(&seen);
         wave.hits[other].triangle == hit.triangle || is_like(facet(other))
     };
     let part = (first + 1..run.end).filter(|&other| is_alike(other)).fold(1, |part, other| part | 1 << (other - first));
-    let mirrored = if list.mirrors(first) { most_mirrored(scene, hit) } else { 0.0 };
-    if mirrored * weight_of(list, first, part).max_element() <= MOST_MERGED { part } else { 1 }
+    let varying = match is_blurred {
+        true => 1.0,
+        false if list.mirrors(first) => most_mirrored(scene, hit),
+        false => 0.0,
+    };
+    if varying * weight_of(list, first, part).max_element() <= MOST_MERGED { part } else { 1 }
 }
 
 /// The sum of the weights of the rays of a part.

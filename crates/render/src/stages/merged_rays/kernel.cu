@@ -36,22 +36,22 @@ DEVICE unsigned part_of(const MergedRays &args, unsigned first, unsigned start, 
     if (!may_merge(args, first, hit) || lets_through(args.scene, hit))
         return 1;
     const Facet own = facet_of_ray(args, first, hit);
+    const bool blurred = lights_share(args.rays, first) < 1.0f;
     unsigned part = 1;
     for (unsigned other = first + 1; other < end; ++other) {
         const Hit beside = load_hit(args.hits, other);
         if ((taken >> (other - start) & 1) != 0 || !may_merge(args, other, beside))
             continue;
-        const bool blurred = lights_share(args.rays, first) < 1.0f && lights_share(args.rays, other) < 1.0f;
         bool like = beside.triangle == hit.triangle;
         if (!like) {
             const Facet facet = facet_of_ray(args, other, beside);
-            like = continues(own, facet) || (blurred && resembles(own, facet));
+            like = continues(own, facet) || (blurred && lights_share(args.rays, other) < 1.0f && resembles(own, facet));
         }
         if (like)
             part |= 1u << (other - first);
     }
-    const float mirrored = args.rays.depth - throughs_of(args.rays, first) < args.rays.bounces ? most_mirrored(args.scene, hit) : 0.0f;
-    return mirrored * max_element(weight_of_part(args, first, part)) <= MOST_MERGED ? part : 1;
+    const float varying = blurred ? 1.0f : mirrors(args.rays, first) ? most_mirrored(args.scene, hit) : 0.0f;
+    return varying * max_element(weight_of_part(args, first, part)) <= MOST_MERGED ? part : 1;
 }
 
 KERNEL(merge_mirrored, MergedRays, BLOCK, 4) {

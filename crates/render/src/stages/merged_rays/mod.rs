@@ -6,8 +6,8 @@
 //!    ([`alike`](super::pixel_samples::alike)), unless too much of what this surface mirrors would reach the pixel by a single ray.
 //! 2. Its weight is the sum of theirs, and its cone covers what all of them see of a texture.
 //!
-//! Rays from rough mirrors are many, and blur what they show: of these it takes all that meet the same material with a normal within 26 degrees. It is
-//! any of them, so that the mean over pixels is right.
+//! Rays from rough mirrors blur what they show: of these it takes all that meet the same material with a normal within 26 degrees, unless too much
+//! of what this material shows would reach the pixel by a single ray, which would be noise. It is any of them, so that the mean over pixels is right.
 //!
 //! Rays that went through a surface stay apart, and those that see lights.
 

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{
-    DIRECTION_SHIFT, FADE_SHIFT, LEAST_ONWARD, LEAST_THIN, LOBE_PATTERN, MOST_THROUGHS, THROUGHS_SHIFT,
+    DIRECTION_SHIFT, FADE_SHIFT, LEAST_ONWARD, LEAST_THIN, LOBE_PATTERN, LOBE_TILE, MOST_DIRECTIONS, MOST_THROUGHS,
+    THROUGHS_SHIFT, UPPER_BITS, UPPER_NIBBLES, UPPER_PAIRS,
 };
 use rayon::prelude::*;
 
@@ -39,11 +40,37 @@ fn beyond(list: &RayList) -> RayList {
     RayList { depth: list.depth + 1, ..list.beyond() }
 }
 
-/// The pattern of the directions of all mirror rays of a ray's pixel at this depth: samples take parts of it that follow each other.
-fn pattern_of(wave: &HostWave, ray: usize) -> Pattern {
+/// The points that select the directions of the `count` mirror rays of a ray.
+fn points(wave: &HostWave, ray: usize, count: u32) -> impl Fn(u32) -> [f32; 2] {
     let list = wave.rays;
-    let key = u64::from(list.depth) << 32 | u64::from(list.window.number(list.pixels[ray]));
-    Pattern::new(wave.job.sampling.seed, key, LOBE_PATTERN as usize)
+    // 1. Those of a tile of pixels are one pattern at each depth, in the order of a curve.
+    let [x, y] = list.window.place(list.pixels[ray]);
+    let tile = ((y / LOBE_TILE) << 16) | (x / LOBE_TILE);
+    let key = u64::from(list.depth) << 32 | u64::from(tile);
+    let pattern = Pattern::new(wave.job.sampling.seed, key, LOBE_PATTERN as usize);
+    let place = along_curve(x % LOBE_TILE, y % LOBE_TILE);
+
+    // 2. Those of a pixel follow each other: of its first sample, or of the only one, and so on.
+    let samples = if list.sample(ray) == 0 { 1 } else { wave.job.pixel_samples.next_power_of_two() };
+    let directions = if list.is_mirrored(ray) { MOST_DIRECTIONS } else { count };
+    let first = (place * samples * directions).wrapping_add(list.number_in_pixel(ray) * count);
+    move |number| {
+        let point = pattern.point(first.wrapping_add(number));
+        [point.x, point.y]
+    }
+}
+
+/// The number of a pixel of a tile along the curve that visits the squares of 2, 4, 8 … pixels one after the other: the bits of both
+/// coordinates in turn.
+fn along_curve(x: u32, y: u32) -> u32 {
+    spaced(x) | (spaced(y) << 1)
+}
+
+/// Eight bits with a zero above each.
+fn spaced(bits: u32) -> u32 {
+    let bits = (bits | bits << 4) & !UPPER_NIBBLES;
+    let bits = (bits | bits << 2) & !UPPER_PAIRS;
+    (bits | bits << 1) & !UPPER_BITS
 }
 
 /// The rays that go on from those in `range`.
@@ -99,10 +126,9 @@ fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
         let count = if list.is_mirrored(index) { 1 } else { directions(weight.max_element(), roughness) };
         let cone = || blurred(cone(), roughness, count, list.weight(index).max_element());
         let sample = sample | faded(roughness) << FADE_SHIFT;
-        let pattern = pattern_of(wave, index);
+        let point = points(wave, index, count);
         for number in 0..count {
-            let point = pattern.point(list.sample_index(index) * count + number);
-            let (direction, share) = surface.drawn(lobe, [point.x, point.y]);
+            let (direction, share) = surface.drawn(lobe, point(number));
             let weight = reaches * share / count as f32;
             if weight.max_element() >= least
                 && let Some(weight) = thinned(index, weight)

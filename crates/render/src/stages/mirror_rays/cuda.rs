@@ -32,6 +32,7 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
         counts: counts.output(),
         per_ray: per_ray.output(),
         seed: wave.job.sampling.seed,
+        pixel_samples: u64::from(wave.job.pixel_samples.next_power_of_two()),
         thin: thin.as_ref().map_or(Out::NULL, Buffer::output),
         ..MirrorRays::zeroed()
     };

@@ -61,10 +61,40 @@ DEVICE Vec3 thinned(Vec3 weight, float least, unsigned &sum) {
     return sum >> THIN_BITS != before >> THIN_BITS ? ((float)(1u << THIN_BITS) / (float)part) * weight : splat(0.0f);
 }
 
+// Eight bits with a zero above each.
+DEVICE unsigned spaced(unsigned bits) {
+    bits = (bits | bits << 4) & ~UPPER_NIBBLES;
+    bits = (bits | bits << 2) & ~UPPER_PAIRS;
+    return (bits | bits << 1) & ~UPPER_BITS;
+}
+
+// The number of a pixel of a tile along the curve that visits the squares of 2, 4, 8 ... pixels one after the other: the bits of both coordinates
+// in turn.
+DEVICE unsigned along_curve(unsigned x, unsigned y) { return spaced(x) | spaced(y) << 1; }
+
+// The points that select the directions of the mirror rays of a ray.
+struct Points {
+    Pattern pattern;
+    unsigned first;
+};
+
+DEVICE Points points_of(const MirrorRays &args, unsigned ray, unsigned count) {
+    // 1. Those of a tile of pixels are one pattern at each depth, in the order of a curve.
+    const unsigned pixel = pixel_of(args.rays, ray);
+    const unsigned x = place_in_image(args.rays.view, pixel, 0), y = place_in_image(args.rays.view, pixel, 1);
+    const unsigned tile = (y / LOBE_TILE) << 16 | x / LOBE_TILE, place = along_curve(x % LOBE_TILE, y % LOBE_TILE);
+
+    // 2. Those of a pixel follow each other: of its first sample, or of the only one, and so on.
+    const unsigned samples = sample_of(args.rays, ray) == 0 ? 1 : (unsigned)args.pixel_samples;
+    const unsigned directions = is_mirrored(args.rays, ray) ? MOST_DIRECTIONS : count;
+    return Points{pattern_of(args.seed, (unsigned long long)args.rays.depth << 32 | tile, LOBE_PATTERN),
+                  place * samples * directions + number_in_pixel(args.rays, ray) * count};
+}
+
 // The mirror at a surface point, and where it reflects a ray.
 struct Mirror {
     Surface surface;
-    Pattern pattern;
+    Points points;
     // In how many directions; 0 if none.
     unsigned count;
     // The share of all that the ray sees that reaches the pixel, and of what a smooth mirror shows.
@@ -86,8 +116,7 @@ DEVICE Mirror mirror_at(const MirrorRays &args, unsigned ray, Vec3 mirrored, Mat
     mirror.reaches = in_front(args.scene, args.rays, args.hits, ray, 1.0f).left * weight_of(args.rays, ray);
     if (!is_mirrored(args.rays, ray))
         mirror.count = facets_directions(max_element(mirrored), mirror.surface.material->roughness);
-    const unsigned number = number_in_image(args.rays.view, pixel_of(args.rays, ray));
-    mirror.pattern = pattern_of(args.seed, (unsigned long long)args.rays.depth << 32 | number, LOBE_PATTERN);
+    mirror.points = points_of(args, ray, mirror.count);
     return mirror;
 }
 
@@ -95,7 +124,7 @@ DEVICE Mirror mirror_at(const MirrorRays &args, unsigned ray, Vec3 mirrored, Mat
 DEVICE Drawn mirror_ray(const MirrorRays &args, unsigned ray, const Mirror &mirror, unsigned number) {
     if (!mirror.surface.material->facets)
         return Drawn{normalize(mirrored(mirror.surface)), mirror.mirrored};
-    const Vec3 point = pattern_point(mirror.pattern, sample_index(args.rays, ray) * mirror.count + number);
+    const Vec3 point = pattern_point(mirror.points.pattern, mirror.points.first + number);
     Drawn one = drawn(mirror.surface, point.x, point.y);
     one.share = mirror.reaches * one.share / (float)mirror.count;
     if (max_element(one.share) < (args.thin != nullptr ? LEAST_THIN : LEAST_ONWARD))

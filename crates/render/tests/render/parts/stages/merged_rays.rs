@@ -1,5 +1,5 @@
 use glam::Vec3;
-use lightmesh_layout::constants::THROUGHS_SHIFT;
+use lightmesh_layout::constants::{FADE_SHIFT, THROUGHS_MASK, THROUGHS_SHIFT};
 use lightmesh_render::accel::{Hit, Ray};
 use lightmesh_render::backend::Wave;
 use lightmesh_render::internals::stages::merged_rays;
@@ -9,6 +9,12 @@ use lightmesh_testkit::SceneDraft;
 
 /// What is left of rays straight down from these places, in these pixels, above a floor that mirrors `ks` and, at x < 0, a higher one.
 fn left(ks: f32, rays: &[(f32, u32)], throughs: u32) -> (RayList, Vec<Hit>) {
+    left_of(ks, rays, throughs << THROUGHS_SHIFT, 1.0)
+}
+
+/// The same with marks on the numbers of samples, and of so many times the weight.
+fn left_of(ks: f32, rays: &[(f32, u32)], marks: u32, times: f32) -> (RayList, Vec<Hit>) {
+    let throughs = marks >> THROUGHS_SHIFT & THROUGHS_MASK;
     let floor = |x: f64, y: f64| [[x, y, -5.0], [x, y, 5.0], [x + 5.0, y, 5.0], [x + 5.0, y, -5.0]];
     let draft = SceneDraft::new().painted(Material::default().with_ks(Vec3::splat(ks)));
     let scene = draft.quad(floor(0.0, 0.0)).quad(floor(-5.0, 1.0)).finish("floors");
@@ -17,8 +23,8 @@ fn left(ks: f32, rays: &[(f32, u32)], throughs: u32) -> (RayList, Vec<Hit>) {
     let list = RayList {
         rays: rays.iter().map(|&(x, _)| down(x)).collect(),
         pixels: rays.iter().map(|&(_, pixel)| pixel).collect(),
-        samples: (0..rays.len() as u32).map(|ray| ray + 1 + (throughs << THROUGHS_SHIFT)).collect(),
-        weights: (0..rays.len()).map(|ray| Vec3::splat(0.25 + ray as f32 / 64.0)).collect(),
+        samples: (0..rays.len() as u32).map(|ray| ray + 1 + marks).collect(),
+        weights: (0..rays.len()).map(|ray| Vec3::splat(times * (0.25 + ray as f32 / 64.0))).collect(),
         cones: vec![Cone { width: 0.5, spread: -0.25 }; rays.len()],
         depth: 1 + throughs,
         bounces: 2,
@@ -62,4 +68,12 @@ fn many_rays_of_one_pixel_are_merged_32_at_a_time() {
     let rays: Vec<(f32, u32)> = (0..2100).map(|ray| (1.0, ray / 70)).collect();
     let (rays, _) = left(0.0, &rays, 0);
     assert_eq!(rays.pixels, (0..30).flat_map(|pixel| [pixel; 3]).collect::<Vec<u32>>());
+}
+
+/// What a rough mirror shows of a surface is not one thing, even where this surface is matt.
+#[test]
+fn rays_from_rough_mirrors_are_merged_if_little_of_them_is_seen() {
+    let faded = 15 << FADE_SHIFT;
+    assert_eq!(left_of(0.0, &RAYS, faded, 1.0).1.len(), RAYS.len());
+    assert_eq!(left_of(0.0, &RAYS, faded, 1.0 / 32.0).1.len(), 5);
 }

@@ -1,12 +1,12 @@
 //! Directions and weights of mirrored rays.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{DEEP, LEAST_THICK, LEAST_THICK_DEEP};
+use lightmesh_layout::constants::{DEEP, DIRECTION_SHIFT, LEAST_THICK, LEAST_THICK_DEEP, MOST_DIRECTIONS};
 use lightmesh_render::accel::{Hit, Ray};
 use lightmesh_render::backend::Wave;
 use lightmesh_render::internals::stages::mirror_rays;
 use lightmesh_render::{Acceleration, Job, LightGroup, PreparedScene, RayList, Sampling, Unobserved, Window};
-use lightmesh_scene::{Material, Opacity};
+use lightmesh_scene::{Facets, Material, Opacity};
 use lightmesh_testkit::SceneDraft;
 
 fn mirror(ks: Vec3) -> Material {
@@ -69,6 +69,28 @@ fn smooth_normals_turn_the_mirror_but_not_into_the_surface() {
     // A normal that would reflect into the floor: the geometric one is used instead.
     let next = mirrored(mirror(Vec3::ONE), Some(Vec3::new(0.99, 0.141, 0.0)), &rays(Vec::new()));
     assert!(next.rays.iter().all(|ray| ray.direction.y > 0.0), "{:?}", next.rays);
+}
+
+/// What a rough mirror reflects in each of its directions, another one reflects in its own.
+#[test]
+fn rays_from_a_rough_mirror_leave_another_in_different_directions() {
+    let down = Ray { origin: Vec3::new(0.5, 2.0, 0.25), direction: Vec3::NEG_Y, t_max: f32::INFINITY };
+    let list = RayList {
+        rays: vec![down; MOST_DIRECTIONS as usize],
+        pixels: vec![4; MOST_DIRECTIONS as usize],
+        samples: (0..MOST_DIRECTIONS).map(|number| 1 | number << DIRECTION_SHIFT).collect(),
+        window: Window::all([8, 8]),
+        depth: 1,
+        ..RayList::default()
+    };
+    let metal = Material::matt(Vec3::ONE).with_facets(Facets::new(0.5).with_metallic(1.0));
+    let next = mirrored(metal, None, &list);
+    assert_eq!(next.rays.len(), MOST_DIRECTIONS as usize, "one of each");
+    for (first, ray) in next.rays.iter().enumerate() {
+        for other in &next.rays[..first] {
+            assert!(ray.direction.distance(other.direction) > 1e-3, "{} and {}", ray.direction, other.direction);
+        }
+    }
 }
 
 /// Many rays of this depth and weight, `each` of each pixel of an image of 64 × 64, onto a floor of this material.
