@@ -73,8 +73,8 @@ DEVICE void guided_place(const Fans &fans, unsigned site, unsigned long long see
             beyond = middle;
     }
     const unsigned first = block > 0 ? ends[block - 1] : 0, count = ends[block] - first, number = index - first;
-    const unsigned within = (unsigned)random_bits(seed, index, fans.side);
-    const unsigned scramble = (unsigned)random_bits(seed, rays + block, fans.side);
+    const unsigned scramble = (unsigned)random_bits(seed, block, fans.side);
+    const unsigned within = (unsigned)random_bits(seed, (unsigned long long)(number + 1) << 32 | block, fans.side);
     const float across = ((float)number + (float)(within >> 8) * LAST_DIGIT) / (float)count;
     const float along = (float)((__brev(number) ^ scramble) >> 8) * LAST_DIGIT;
     const float side = (float)blocks;

@@ -64,6 +64,15 @@ impl Guides {
     }
 }
 
+/// Where the second rays of one site lie in the square [−1, 1]², and their areas relative to those of an even fan: `sides` are those of the first and
+/// the second rays, `seen` is luminance times weight of each of the first ones, row by row.
+pub fn guided(sides: [u32; 2], seen: &[f32], seed: u64) -> Vec<(Vec2, f32)> {
+    let [first, second] = sides.map(Fan::new);
+    let mut guides = Guides::new(first);
+    guides.add(first, second, seen);
+    (0..second.len() as u32).map(|index| guides.of(0).place(second, seed, index)).collect()
+}
+
 /// The standard deviation of what the first rays saw in a block and next to it.
 fn deviation(seen: &[f32], side: u32, column: u32, row: u32) -> f32 {
     let around = |block: u32| {
@@ -84,15 +93,16 @@ fn deviation(seen: &[f32], side: u32, column: u32, row: u32) -> f32 {
 
 impl Guide<'_> {
     /// Where ray number `index` of a fan lies in the square [−1, 1]², and the area that it stands for, relative to that of a ray of an even fan.
-    /// In a block, rays are the points of Hammersley's set, scrambled.
+    /// In a block, rays are the points of Hammersley's set, scrambled. They depend on its number of rays alone: as something moves, those of other
+    /// blocks stay.
     pub(super) fn place(&self, fan: Fan, seed: u64, index: u32) -> (Vec2, f32) {
         let block = self.ends.partition_point(|&end| end <= index) as u32;
         let first = if block > 0 { self.ends[block as usize - 1] } else { 0 };
         let count = self.ends[block as usize] - first;
         let number = index - first;
         let digits = |bits: u32| (bits >> 8) as f32 * LAST_DIGIT;
-        let within = random_bits(seed, u64::from(index), fan.side() as usize) as u32;
-        let scramble = random_bits(seed, (fan.len() as u32 + block).into(), fan.side() as usize) as u32;
+        let bits = |key: u64| random_bits(seed, key << 32 | u64::from(block), fan.side() as usize) as u32;
+        let (scramble, within) = (bits(0), bits(u64::from(number) + 1));
         let across = (number as f32 + digits(within)) / count as f32;
         let along = digits(number.reverse_bits() ^ scramble);
         let side = self.blocks as f32;

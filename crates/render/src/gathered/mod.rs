@@ -17,7 +17,7 @@ pub(crate) mod directions;
 mod fan;
 mod far;
 mod fine;
-mod guide;
+pub(crate) mod guide;
 mod light;
 mod lookup;
 mod rays;
@@ -145,7 +145,7 @@ pub struct SurfaceLight {
 }
 
 /// Changes with what is computed from the same sources: what was saved before is gathered anew.
-const REVISION: &[u8] = b"guided";
+const REVISION: &[u8] = b"guided2";
 
 /// All that gathered light depends on, besides the geometry.
 pub(crate) struct Sources {

@@ -1,1 +1,2 @@
 mod directions;
+mod guide;
