@@ -21,6 +21,8 @@ pub(super) struct Triangle {
     /// The mean over its channels and texels of what it emits.
     pub(super) radiance: f64,
     is_instanced: bool,
+    /// Its number in its lamp.
+    number: usize,
 }
 
 /// Triangles that share corners.
@@ -34,7 +36,7 @@ pub(super) struct Lamp {
 }
 
 /// A corner, rounded.
-type Place = [i64; 3];
+pub(super) type Place = [i64; 3];
 
 /// The lamps of each material that is marked, in the order of materials.
 pub(super) fn lamps(geometry: &Geometry, scene: &Extent) -> Vec<(u32, Vec<Lamp>)> {
@@ -46,7 +48,7 @@ pub(super) fn lamps(geometry: &Geometry, scene: &Extent) -> Vec<(u32, Vec<Lamp>)
         let material = geometry.mesh.materials[stored] as usize;
         if let Some(glow) = &glows[material] {
             let radiance = glow.of_triangle(&geometry.mesh, stored).element_sum() / 3.0;
-            triangles[material].push(Triangle { corners, stored, radiance, is_instanced });
+            triangles[material].push(Triangle { corners, stored, radiance, is_instanced, number: 0 });
         }
     });
     let of_material = |(number, mut triangles): (usize, Vec<Triangle>)| {
@@ -97,14 +99,15 @@ fn connected(triangles: Vec<Triangle>, one_sided: bool, scene: &Extent) -> Vec<L
             lamps.push(Lamp { one_sided, ..Lamp::default() });
             lamps.len() - 1
         });
-        lamps[number].triangles.push(triangle);
-        lamps[number].places.push(places);
+        let lamp = &mut lamps[number];
+        lamp.triangles.push(Triangle { number: lamp.triangles.len(), ..triangle });
+        lamp.places.push(places);
     }
     lamps
 }
 
 /// The first triangle of those that belong together; ways to it become shorter.
-fn leader(leaders: &mut [usize], mut index: usize) -> usize {
+pub(super) fn leader(leaders: &mut [usize], mut index: usize) -> usize {
     while leaders[index] != index {
         leaders[index] = leaders[leaders[index]];
         index = leaders[index];
@@ -136,7 +139,12 @@ impl Lamp {
         self.triangles.iter().flat_map(|triangle| triangle.corners)
     }
 
-    fn diagonal(&self) -> f64 {
+    /// The corners of one of its triangles as numbers.
+    pub(super) fn places_of(&self, triangle: &Triangle) -> [Place; 3] {
+        self.places[triangle.number]
+    }
+
+    pub(super) fn diagonal(&self) -> f64 {
         let least = self.corners().fold(DVec3::INFINITY, DVec3::min);
         let most = self.corners().fold(DVec3::NEG_INFINITY, DVec3::max);
         (most - least).length()
@@ -164,6 +172,14 @@ impl Lamp {
         let placed = placed.map(|instance| is_within(instance.bounds.min) && is_within(instance.bounds.max));
         let (within, all) = others.chain(placed).fold((0, 0), |(within, all), is| (within + usize::from(is), all + 1));
         2 * within > all
+    }
+
+    /// Whether there is nothing else.
+    pub(super) fn is_alone(&self, mesh: &Mesh) -> bool {
+        let own: HashSet<usize> = self.triangles.iter().map(|triangle| triangle.stored).collect();
+        let mut stored = mesh.own_triangles();
+        let mut placed = mesh.instances.list().iter().flat_map(|instance| instance.triangles.clone());
+        stored.all(|index| own.contains(&index)) && placed.all(|index| own.contains(&(index as usize)))
     }
 
     /// Six times the volume that a closed lamp encloses, negative if its triangles face inwards; `None` for an open one.

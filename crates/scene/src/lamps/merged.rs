@@ -5,6 +5,8 @@
 //!    longest side.
 //! 2. A group shines from the place of that of its lights which is nearest to its middle, which is no place inside a wall, with the light of all.
 
+use std::cmp::Ordering;
+
 use glam::Vec3;
 
 use super::LIGHTS;
@@ -12,6 +14,12 @@ use crate::Light;
 
 /// How far lights are from each other that face opposite ways, relative to the extent of all.
 const FACING: f32 = 1.0;
+/// Of what differs less, as a share, the first counts.
+const ALIKE: f32 = 1e-3;
+/// Places that differ less are one, relative to half of that extent.
+const HAIR: f32 = 1e-5;
+/// By how many of these what is computed from such places may differ.
+const SLACK: f32 = 4.0;
 
 /// Lights of a group, and how much would be wrong if they were one.
 struct Group {
@@ -22,8 +30,9 @@ struct Group {
     wrong: f32,
 }
 
-/// At most [`LIGHTS`] lights with the same strength.
-pub(super) fn merged(lights: Vec<Light>) -> Vec<Light> {
+/// At most [`LIGHTS`] lights with the same strength. Neither their order nor a hair between their places matters: lamps that are stored once are the
+/// same as copies.
+pub(super) fn merged(mut lights: Vec<Light>) -> Vec<Light> {
     if lights.len() <= LIGHTS {
         return lights;
     }
@@ -32,20 +41,21 @@ pub(super) fn merged(lights: Vec<Light>) -> Vec<Light> {
         (least.min(place(light)), most.max(place(light)))
     });
     let scale = 0.5 * FACING * (most - least).length();
-    let points: Vec<[f32; 6]> = lights
-        .iter()
-        .map(|light| {
-            let (place, facing) = (place(light), scale * light.surface.unwrap_or_default());
-            [place.x, place.y, place.z, facing.x, facing.y, facing.z]
-        })
-        .collect();
+    let rounded = |value: f32| (value / (HAIR * scale)).round() * (HAIR * scale);
+    let point = |light: &Light| -> [f32; 6] {
+        let (place, facing) = (place(light), scale * light.surface.unwrap_or_default());
+        [place.x, place.y, place.z, facing.x, facing.y, facing.z].map(rounded)
+    };
+    lights.sort_by(|a, b| point(a).partial_cmp(&point(b)).unwrap_or(Ordering::Equal));
+    let points: Vec<[f32; 6]> = lights.iter().map(point).collect();
     let group = |members: Vec<usize>| -> Group {
         let ends: [[f32; 2]; 6] = std::array::from_fn(|axis| {
             let values = members.iter().map(|&member| points[member][axis]);
             values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
         });
         let sides = ends.map(|[low, high]| high - low);
-        let axis = (0..6).max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap_or(0);
+        let longest = sides.iter().copied().fold(0.0, f32::max);
+        let axis = (0..6).find(|&axis| sides[axis] >= longest - SLACK * HAIR * scale).unwrap_or(0);
         let strength: f32 = members.iter().map(|&member| power(&lights[member]).element_sum()).sum();
         let is_one = members.len() < 2;
         let wrong = if is_one { -1.0 } else { strength * sides.iter().map(|side| side * side).sum::<f32>() };
@@ -53,11 +63,12 @@ pub(super) fn merged(lights: Vec<Light>) -> Vec<Light> {
     };
     let mut groups = vec![group((0..lights.len()).collect())];
     while groups.len() < LIGHTS {
-        let worst =
-            (0..groups.len()).max_by(|&a, &b| groups[a].wrong.total_cmp(&groups[b].wrong)).expect("there is one");
+        let most = groups.iter().fold(-1.0, |most: f32, group| most.max(group.wrong));
+        let is_worst = |group: &Group| group.wrong >= most - ALIKE * most.abs();
+        let worst = groups.iter().position(is_worst).expect("one is the worst");
         let Group { mut members, axis, middle, .. } = groups.swap_remove(worst);
         let (mut low, mut high): (Vec<usize>, Vec<usize>) =
-            members.iter().partition(|&&member| points[member][axis] <= middle);
+            members.iter().partition(|&&member| points[member][axis] <= middle + SLACK * HAIR * scale);
         // All in one place.
         if low.is_empty() || high.is_empty() {
             high = members.split_off(members.len() / 2);
@@ -77,7 +88,9 @@ fn one(lights: &[Light], points: &[[f32; 6]], members: &[usize]) -> (usize, Ligh
     let middle: [f32; 6] =
         std::array::from_fn(|axis| members.iter().map(|&member| strength(member) / sum * points[member][axis]).sum());
     let distance = |member: usize| -> f32 { (0..6).map(|axis| (points[member][axis] - middle[axis]).powi(2)).sum() };
-    let nearest = *members.iter().min_by(|&&a, &&b| distance(a).total_cmp(&distance(b))).expect("groups have lights");
+    let least = members.iter().map(|&member| distance(member)).fold(f32::INFINITY, f32::min);
+    let is_nearest = |&&member: &&usize| distance(member) <= (1.0 + ALIKE) * least;
+    let nearest = *members.iter().find(is_nearest).unwrap_or(&members[0]);
     let all = members.iter().map(|&member| power(&lights[member])).sum::<Vec3>();
     (nearest, Light { intensity: all / emitted(&lights[nearest]), ..lights[nearest].clone() })
 }

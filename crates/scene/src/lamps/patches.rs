@@ -1,11 +1,15 @@
-//! Triangles of a lamp that face a similar way are a patch: an emitter in one plane.
+//! Triangles of a lamp that face a similar way are a patch: an emitter in one plane. Those that lie behind each other, and are not connected by
+//! others of the patch, are patches of their own: the inner sides of a trough shine into it, the outer ones away from it.
 //!
-//! Which way a patch shines: all sides of a closed lamp shine outwards, an open one shines to both sides. If a material is
+//! Which way a patch shines: all sides of a closed lamp shine outwards, an open one shines to both sides, and so does one without anything else, in
+//! front of which nothing is: the walls of a room. If a material is
 //! [one-sided](crate::Material::one_sided), as in glTF, the order of corners decides instead.
+
+use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
-use super::connected::{Lamp, Triangle, is_lit};
+use super::connected::{Lamp, Triangle, is_lit, leader};
 use super::glow::Glow;
 use super::pieces::Piece;
 use super::{Extent, pieces};
@@ -22,7 +26,9 @@ const FILLED: f64 = 0.98;
 /// The share of its square that a disc fills, and how much that may differ, also between its widths.
 const DISC: (f64, f64) = (std::f64::consts::FRAC_PI_4, 0.06);
 /// How far lights lie in front of their surface, relative to its size and to the scene's.
-pub(super) const RAISED: [f64; 2] = [1e-3, 1e-5];
+pub(super) const RAISED: [f64; 2] = [1e-5, 1e-5];
+/// Parts of a patch whose heights differ less, as a share of the lamp's size, are at one height.
+const LEVEL: f64 = 1e-3;
 /// What lies less in front of a lamp than this share of the scene's diagonal is beside it, as the ceiling is in which a lamp is set.
 const BESIDE: f64 = 1e-4;
 
@@ -43,8 +49,69 @@ pub(super) struct Shape {
 }
 
 impl Lamp {
-    /// Its triangles by the way that they face: within a patch by about this cosine.
+    /// Its triangles by the way that they face, within a patch by about this cosine, and by their heights.
     pub(super) fn patches(&self, alike: f64) -> Vec<Patch<'_>> {
+        self.facing(alike).into_iter().flat_map(|patch| self.at_heights(patch)).collect()
+    }
+
+    /// The parts of a patch that lie behind each other.
+    fn at_heights<'l>(&self, patch: Patch<'l>) -> Vec<Patch<'l>> {
+        // 1. The parts that are connected.
+        let mut leaders: Vec<usize> = (0..patch.triangles.len()).collect();
+        let mut at = HashMap::new();
+        for (index, triangle) in patch.triangles.iter().enumerate() {
+            for place in self.places_of(triangle) {
+                let other = *at.entry(place).or_insert(index);
+                let (a, b) = (leader(&mut leaders, other), leader(&mut leaders, index));
+                leaders[a.max(b)] = a.min(b);
+            }
+        }
+        let firsts: Vec<usize> = (0..leaders.len()).map(|index| leader(&mut leaders, index)).collect();
+        if firsts.iter().all(|&first| first == 0) {
+            return vec![patch];
+        }
+        // 2. Their heights.
+        let normal = patch.normal();
+        let mut parts: HashMap<usize, ([f64; 2], Vec<usize>)> = HashMap::new();
+        for (index, first) in firsts.into_iter().enumerate() {
+            let (ends, members) = parts.entry(first).or_insert(([f64::MAX, f64::MIN], Vec::new()));
+            for corner in patch.triangles[index].corners {
+                let height = normal.dot(corner);
+                *ends = [ends[0].min(height), ends[1].max(height)];
+            }
+            members.push(index);
+        }
+        let mut parts: Vec<([f64; 2], Vec<usize>)> = parts.into_values().collect();
+        parts.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
+        // 3. Those that are at one height are one.
+        let level = LEVEL * self.diagonal();
+        let mut levels: Vec<([f64; 2], Vec<usize>)> = Vec::new();
+        for (ends, mut members) in parts {
+            match levels.last_mut() {
+                Some((last, all)) if ends[0] <= last[1] + level => {
+                    last[1] = last[1].max(ends[1]);
+                    all.append(&mut members);
+                }
+                _ => levels.push((ends, members)),
+            }
+        }
+        let one = |(_, mut members): ([f64; 2], Vec<usize>)| {
+            members.sort_unstable();
+            let mut triangles = members.into_iter().map(|index| patch.triangles[index]);
+            let first = triangles.next().expect("a part has a triangle");
+            let toward = |triangle: &Triangle| {
+                let outward = triangle.outward();
+                if outward.dot(patch.outward) < 0.0 { -outward } else { outward }
+            };
+            let mut part = Patch { triangles: vec![first], outward: toward(first) };
+            triangles.for_each(|triangle| part.add(triangle, toward(triangle)));
+            part
+        };
+        levels.into_iter().map(one).collect()
+    }
+
+    /// Its triangles by the way that they face.
+    fn facing(&self, alike: f64) -> Vec<Patch<'_>> {
         let mut triangles: Vec<&Triangle> = self.triangles.iter().collect();
         triangles.sort_by(|a, b| b.area().total_cmp(&a.area()));
         let volume = if self.one_sided { Some(1.0) } else { self.volume() };
@@ -80,21 +147,29 @@ impl Lamp {
         let brighter = all / strength(&patches);
         // 2. Of a bent surface, the image is not cut.
         let cuts_image = glow.has_image() && patches.len() <= 2;
-        let is_open = !self.one_sided && self.volume().is_none();
-        let sides = |patch| if is_open { sides(patch, geometry, scene) } else { vec![patch] };
+        let is_closed = self.one_sided || self.volume().is_some();
+        let is_lit = |patch: &Patch| patch.is_lit(geometry, scene);
+        let is_room = !self.one_sided && self.is_alone(&geometry.mesh) && !patches.iter().any(is_lit);
+        let sides = |patch| match is_closed {
+            true if is_room => both(patch).into(),
+            true => vec![patch],
+            false => sides(patch, geometry, scene),
+        };
         let lights = |patch: Patch| patch.lights(glow, geometry, scene, (brighter, cuts_image));
         patches.into_iter().flat_map(sides).flat_map(lights).collect()
     }
 }
 
+/// A patch, and its other side.
+fn both(patch: Patch<'_>) -> [Patch<'_>; 2] {
+    let other = Patch { outward: -patch.outward, ..patch.clone() };
+    [patch, other]
+}
+
 /// A patch that shines to both sides, each as one; one in front of which nothing is left is left out, unless that is true of both.
 fn sides<'l>(patch: Patch<'l>, geometry: &Geometry, scene: &Extent) -> Vec<Patch<'l>> {
-    let other = Patch { outward: -patch.outward, ..patch.clone() };
-    let is_lit = |patch: &Patch| {
-        let height = patch.height() + BESIDE * scene.diagonal;
-        is_lit(&geometry.mesh, &scene.bounds, patch.normal(), height)
-    };
-    match [is_lit(&patch), is_lit(&other)] {
+    let [patch, other] = both(patch);
+    match [&patch, &other].map(|patch| patch.is_lit(geometry, scene)) {
         [true, false] => vec![patch],
         [false, true] => vec![other],
         _ => vec![patch, other],
@@ -109,6 +184,12 @@ impl Patch<'_> {
     /// Its light, over π: that of all its surface, also where that is curved.
     fn strength(&self) -> f64 {
         self.triangles.iter().map(|triangle| triangle.radiance * triangle.area()).sum()
+    }
+
+    /// Whether anything is in front of it.
+    fn is_lit(&self, geometry: &Geometry, scene: &Extent) -> bool {
+        let height = self.height() + BESIDE * scene.diagonal;
+        is_lit(&geometry.mesh, &scene.bounds, self.normal(), height)
     }
 
     fn height(&self) -> f64 {

@@ -1,8 +1,10 @@
 use std::f32::consts::PI;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use lightmesh_scene::internals::lamps::{LIGHTS, lamps};
-use lightmesh_scene::{Bounds, Falloff, Geometry, Light, LightKind, Material, Mesh};
+use lightmesh_scene::{
+    Bounds, Falloff, Geometry, Light, LightKind, Material, Mesh, Opacity, OpacityChannel, Texture, TextureUse,
+};
 
 /// Lamps of the second material in a room of 10³ of the first one.
 fn room(lamps: &[[[f32; 3]; 3]]) -> Geometry {
@@ -291,4 +293,147 @@ fn many_lamps_become_few_with_the_same_light() {
     let places = Bounds::around(lights.iter().filter_map(Light::position));
     assert!(places.min.x < -3.0 && places.max.x > 3.0 && places.max.z > -0.5, "{places:?}");
     assert!((total(&lights) / (2.0 * 6000.0 * 0.0025) - 1.0).abs() < 1e-3, "{}", total(&lights));
+}
+
+/// The middles, normals and strengths of lights whose normal has this component along an axis.
+fn facing(lights: &[Light], axis: usize, sign: f32) -> Vec<(Vec3, f32)> {
+    let is_facing = |light: &&Light| light.surface.is_some_and(|normal| normal[axis] * sign > 0.99);
+    lights.iter().filter(is_facing).map(|light| (light.position().unwrap(), light.intensity.x)).collect()
+}
+
+#[test]
+fn sides_of_a_trough_shine_into_it_and_away_from_it() {
+    // Open at the bottom: two long sides of 2 × 1, half a metre apart, and a lid.
+    let [low, high] = [Vec3::new(-1.0, 0.0, -0.25), Vec3::new(1.0, 1.0, 0.25)];
+    let at = |x: f32, y: f32, z: f32| [x, y, z];
+    let mut sheets = Vec::new();
+    for z in [low.z, high.z] {
+        sheets.extend(quad([at(low.x, low.y, z), at(high.x, low.y, z), at(high.x, high.y, z), at(low.x, high.y, z)]));
+    }
+    let lid =
+        [at(low.x, high.y, low.z), at(high.x, high.y, low.z), at(high.x, high.y, high.z), at(low.x, high.y, high.z)];
+    sheets.extend(quad(lid));
+    let lights = lamps(&mut room(&sheets));
+    for sign in [1.0, -1.0] {
+        let mut found = facing(&lights, 2, sign);
+        found.sort_by(|a, b| a.0.z.total_cmp(&b.0.z));
+        let [(first, one), (second, other)] = found.try_into().unwrap();
+        assert!((first.z - low.z).abs() < 1e-3 && (second.z - high.z).abs() < 1e-3, "{first} {second}");
+        assert!((one - 4.0).abs() < 1e-4 && (other - 4.0).abs() < 1e-4, "of 2 × 1 each: {one} {other}");
+    }
+}
+
+#[test]
+fn a_ring_of_bars_shines_from_its_bars() {
+    let bar = |x: [f32; 2], z: [f32; 2]| cuboid(Vec3::new(x[0], 1.8, z[0]), Vec3::new(x[1], 1.9, z[1]));
+    let mut ring = bar([-0.8, 0.8], [-0.8, -0.7]);
+    ring.extend(bar([-0.8, 0.8], [0.7, 0.8]));
+    ring.extend(bar([-0.8, -0.7], [-0.7, 0.7]));
+    ring.extend(bar([0.7, 0.8], [-0.7, 0.7]));
+    let lights = lamps(&mut room(&ring));
+    // Below there is the ring's own area, and nothing in the hole.
+    let below = facing(&lights, 1, -1.0);
+    let strength: f32 = below.iter().map(|(_, strength)| strength).sum();
+    assert!((strength / (2.0 * (1.6 * 1.6 - 1.4 * 1.4)) - 1.0).abs() < 0.05, "{strength}");
+    assert!(below.iter().all(|(place, _)| place.x.abs().max(place.z.abs()) > 0.7), "{below:?}");
+    // What faces along x: the outer side of one bar, and the inner side of the opposite one.
+    let places: Vec<f32> = facing(&lights, 0, 1.0).iter().map(|(place, _)| place.x).collect();
+    assert!(
+        places.iter().any(|x| (x - 0.8).abs() < 1e-3) && places.iter().any(|x| (x + 0.7).abs() < 1e-3),
+        "{places:?}"
+    );
+}
+
+#[test]
+fn walls_without_anything_else_shine_inwards_too() {
+    let walls = cuboid(Vec3::new(-2.0, -1.0, -1.5), Vec3::new(2.0, 1.0, 1.5));
+    let mut geometry = room(&walls);
+    // Without the triangle of the room around.
+    let mesh = &mut geometry.mesh;
+    mesh.triangles.remove(0);
+    mesh.materials.remove(0);
+    let lights = lamps(&mut geometry);
+    for axis in 0..3 {
+        for sign in [1.0, -1.0] {
+            let places: Vec<f32> = facing(&lights, axis, sign).iter().map(|(place, _)| place[axis] * sign).collect();
+            assert!(places.iter().any(|&place| place > 0.0) && places.iter().any(|&place| place < 0.0), "{places:?}");
+        }
+    }
+}
+
+#[test]
+fn lights_are_a_hair_in_front_of_large_lamps() {
+    let at = |x: f32, z: f32| [x, 4.0, z];
+    let lights = lamps(&mut room(&quad([at(-2.0, -1.5), at(2.0, -1.5), at(2.0, 1.5), at(-2.0, 1.5)])));
+    let below = facing(&lights, 1, -1.0);
+    assert!(!below.is_empty() && below.iter().all(|(place, _)| place.y < 4.0 && place.y > 4.0 - 3e-4), "{below:?}");
+}
+
+/// A square of 3 × 3 with an image of these texels on it, as the first corner's diagonal divides it, of which light is left by its alpha.
+fn panel(size: u32, opacity: Option<Opacity>, texel: impl Fn(u32, u32) -> [u8; 4]) -> Geometry {
+    let at = |x: f32, z: f32| [x, 4.0, z];
+    let mut geometry = room(&quad([at(-1.5, -1.5), at(1.5, -1.5), at(1.5, 1.5), at(-1.5, 1.5)]));
+    let uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    geometry.mesh.uvs = [[0.0; 2]; 3].into_iter().chain(uvs).map(Vec2::from_array).collect();
+    let texels = (0..size * size).map(|index| texel(index % size, index / size)).collect();
+    geometry.textures = vec![Texture { name: "image".into(), size: [size; 2], texels }].into();
+    let lamp = &mut geometry.materials[1];
+    lamp.emission = Vec3::ONE;
+    lamp.emission_texture = Some(TextureUse::new(0));
+    lamp.opacity = opacity;
+    geometry
+}
+
+#[test]
+fn each_texel_counts_by_its_area() {
+    const WHITE: [u8; 4] = [255; 4];
+    const BLACK: [u8; 4] = [0, 0, 0, 255];
+    let strength = |size: u32, is_lit: &dyn Fn(u32, u32) -> bool| {
+        let lights = lamps(&mut panel(size, None, |x, y| if is_lit(x, y) { WHITE } else { BLACK }));
+        facing(&lights, 1, -1.0).iter().map(|(_, strength)| strength).sum::<f32>()
+    };
+    let share = |count: f32, size: f32| 9.0 * count / (size * size);
+    let close = |found: f32, right: f32| assert!((found / right - 1.0).abs() < 1e-3, "{found}, not {right}");
+    close(strength(64, &|x, y| x == y), share(64.0, 64.0));
+    close(strength(64, &|x, y| (x, y) == (31, 30)), share(1.0, 64.0));
+    close(strength(64, &|x, y| (x, y) == (31, 31)), share(1.0, 64.0));
+    close(strength(64, &|_, y| y % 2 == 0), share(2048.0, 64.0));
+    close(strength(512, &|x, y| x / 4 == 9 && y / 4 == 9), share(16.0, 512.0));
+}
+
+#[test]
+fn holes_give_no_light() {
+    let total = |opacity: Option<Opacity>| {
+        let texel = |x: u32, _| [255, 255, 255, if x < 8 { 255 } else { 64 }];
+        let lights = lamps(&mut panel(16, opacity, texel));
+        facing(&lights, 1, -1.0).iter().map(|(_, strength)| strength).sum::<f32>()
+    };
+    let by = |cutoff: f32| Opacity::by(TextureUse::new(0), OpacityChannel::Alpha).with_cutoff(cutoff);
+    let left = [None, Some(by(0.5)), Some(by(0.1)), Some(by(0.5).with_filter(Vec3::ONE))].map(total);
+    for (found, right) in left.into_iter().zip([9.0, 4.5, 9.0, 9.0 * (0.5 + 0.5 * 64.0 / 255.0)]) {
+        assert!((found / right - 1.0).abs() < 1e-3, "{found}, not {right}");
+    }
+}
+
+#[test]
+fn which_lights_are_merged_depends_neither_on_order_nor_on_rounding() {
+    let cubes = |scale: f32, reversed: bool| {
+        let cube = |index: i32| {
+            let place = 0.6 * Vec3::new((index % 8) as f32 - 3.5, (index / 8) as f32 - 3.5, 0.5);
+            cuboid(scale * (place - 0.1), scale * (place + 0.1))
+        };
+        let mut triangles: Vec<_> = (0..64).flat_map(cube).collect();
+        if reversed {
+            triangles.reverse();
+        }
+        let mut lights = lamps(&mut room(&triangles));
+        assert_eq!(lights.len(), LIGHTS);
+        lights.sort_by_key(|light| (10.0 * light.position().unwrap()).round().to_array().map(|axis| axis as i32));
+        lights
+    };
+    let [one, hair, other] = [cubes(1.0, false), cubes(1.0 + 3e-7, false), cubes(1.0, true)];
+    for (one, other) in one.iter().zip(&hair).chain(one.iter().zip(&other)) {
+        let apart = one.position().unwrap().distance(other.position().unwrap());
+        assert!(apart < 1e-3 && (one.intensity.x / other.intensity.x - 1.0).abs() < 1e-3, "{one:?} {other:?}");
+    }
 }
