@@ -63,6 +63,8 @@ constants_of_records! {
         CAMERA = 4;
         /// Mirror rays see it in the image of what surrounds the scene, however rough the mirror is.
         PAINTED = 8;
+        /// That image alone shows it in mirrors: what is seen there has no highlight of it.
+        BOXED = 16;
     }
     Texture {
         /// The same again.

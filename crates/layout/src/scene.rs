@@ -157,6 +157,8 @@ records! {
         cosine: f32,
         /// At a surface point with facets: the share of reflections that mirror rays show.
         shown: f32,
+        /// At a surface point with facets: the same of what an image alone shows, also where the last mirror ray ends.
+        boxed: f32,
         /// At a surface point with facets: the share of the reflections of lights that they do not show.
         unmirrored: f32,
         /// At a surface point with facets: how opaque it is.

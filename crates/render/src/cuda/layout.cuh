@@ -851,6 +851,8 @@ struct alignas(4) Light {
         CAMERA = 4u,
         // Mirror rays see it in the image of what surrounds the scene, however rough the mirror is.
         PAINTED = 8u,
+        // That image alone shows it in mirrors: what is seen there has no highlight of it.
+        BOXED = 16u,
     };
     Vec3 position;
     unsigned kind;
@@ -983,11 +985,12 @@ struct alignas(4) Material {
     Vec3 gain;
     float cosine;
     float shown;
+    float boxed;
     float unmirrored;
     float opacity;
     unsigned metallic_roughness_texture;
 };
-static_assert(sizeof(Material) == 240, "size of Material");
+static_assert(sizeof(Material) == 244, "size of Material");
 static_assert(PLACE_OF(Material, ka) == 0, "place of Material::ka");
 static_assert(PLACE_OF(Material, shininess) == 12, "place of Material::shininess");
 static_assert(PLACE_OF(Material, kd) == 16, "place of Material::kd");
@@ -1021,9 +1024,10 @@ static_assert(PLACE_OF(Material, seen_square) == 204, "place of Material::seen_s
 static_assert(PLACE_OF(Material, gain) == 208, "place of Material::gain");
 static_assert(PLACE_OF(Material, cosine) == 220, "place of Material::cosine");
 static_assert(PLACE_OF(Material, shown) == 224, "place of Material::shown");
-static_assert(PLACE_OF(Material, unmirrored) == 228, "place of Material::unmirrored");
-static_assert(PLACE_OF(Material, opacity) == 232, "place of Material::opacity");
-static_assert(PLACE_OF(Material, metallic_roughness_texture) == 236, "place of Material::metallic_roughness_texture");
+static_assert(PLACE_OF(Material, boxed) == 228, "place of Material::boxed");
+static_assert(PLACE_OF(Material, unmirrored) == 232, "place of Material::unmirrored");
+static_assert(PLACE_OF(Material, opacity) == 236, "place of Material::opacity");
+static_assert(PLACE_OF(Material, metallic_roughness_texture) == 240, "place of Material::metallic_roughness_texture");
 
 struct alignas(8) EnvironmentLevel {
     const Vec3 *texels;

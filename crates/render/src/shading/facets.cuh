@@ -11,6 +11,8 @@ struct FacetSight {
     float spread;
     // Whether its mirror ray is followed.
     bool followed;
+    // Whether it is seen in a mirror.
+    bool mirrored;
 };
 
 // The share of what facets reflect that mirror rays show.
@@ -65,7 +67,7 @@ COLD void set_facets(const FacetShare *table, FacetSight sight, Material *own) {
     // 3.
     own->kd = (opacity * (1.0f - metallic)) * (base * (splat(1.0f) - by_layer));
     // 5.
-    const float shown = sight.followed ? facets_mirrored_share(roughness) : 0.0f;
+    const float mirrors = facets_mirrored_share(roughness), shown = sight.followed ? mirrors : 0.0f;
     own->mirrored = (opacity * shown) * all;
     own->all = own->kd + (opacity * (1.0f - shown)) * all;
     own->ka = own->all;
@@ -75,6 +77,7 @@ COLD void set_facets(const FacetShare *table, FacetSight sight, Material *own) {
     own->square = width * width;
     own->seen_square = own->square + seen * seen;
     own->shown = shown;
+    own->boxed = sight.mirrored ? mirrors : shown;
     const float lights = sight.followed ? 1.0f - (float)facets_faded(roughness) / (float)PARTS_OF_FADE : 0.0f;
     own->unmirrored = 1.0f - lights;
     own->ks = front;

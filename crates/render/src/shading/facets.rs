@@ -45,6 +45,8 @@ pub struct Sight {
     pub spread: f32,
     /// Whether its mirror ray is followed.
     pub followed: bool,
+    /// Whether it is seen in a mirror.
+    pub mirrored: bool,
 }
 
 /// What a surface point with facets does to light from one direction.
@@ -63,6 +65,8 @@ pub struct Lobe {
     width: f32,
     /// The share of reflections that mirror rays show.
     pub shown: f32,
+    /// The same of what an image alone shows: also where the last mirror ray ends.
+    pub boxed: f32,
     /// The share of the reflections of lights that they do not show.
     pub unmirrored: f32,
 }
@@ -86,7 +90,9 @@ impl Lobe {
         // 3.
         coefficients.kd = (opacity * (1.0 - metallic)) * (base * (Vec3::ONE - by_layer));
         // 5.
-        let shown = if sight.followed { mirrored_share(facets.roughness) } else { 0.0 };
+        let mirrors = mirrored_share(facets.roughness);
+        let shown = if sight.followed { mirrors } else { 0.0 };
+        let boxed = if sight.mirrored { mirrors } else { shown };
         coefficients.mirrored = (opacity * shown) * all;
         coefficients.all = coefficients.kd + (opacity * (1.0 - shown)) * all;
         coefficients.ka = coefficients.all;
@@ -98,7 +104,7 @@ impl Lobe {
         let lights = if sight.followed { 1.0 - faded(facets.roughness) as f32 / PARTS_OF_FADE as f32 } else { 0.0 };
         let unmirrored = 1.0 - lights;
         let width = facets.roughness * facets.roughness;
-        Lobe { ends, gain: opacity * gain, square, seen_square, cosine, width, shown, unmirrored }
+        Lobe { ends, gain: opacity * gain, square, seen_square, cosine, width, shown, boxed, unmirrored }
     }
 
     /// 6. The direction in which the facets that `u` in [0, 1)² selects reflect the view, and the share of the radiance there that the eye sees; zero

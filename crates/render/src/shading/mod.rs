@@ -102,7 +102,8 @@ impl Surface {
             let (hit, followed) = (&wave.hits[ray], self.followed);
             let cone = wave.rays.cone_of(ray).after(hit.t);
             let spread = if cone.is_point() { 0.0 } else { self.mirrored_cone(wave, hit, cone).spread.abs() };
-            let sight = Sight { cosine: self.normal.dot(self.view), spread, followed };
+            let mirrored = wave.rays.is_mirrored(ray);
+            let sight = Sight { cosine: self.normal.dot(self.view), spread, followed, mirrored };
             self.lobe = Some(Lobe::new(&facets, &mut self.coefficients, &sight));
         }
         self
@@ -177,6 +178,7 @@ impl Surface {
         if let Some(lobe) = &self.lobe {
             let share = match glint.seen {
                 0 => 1.0,
+                seen if seen & scene::Light::BOXED != 0 => 1.0 - lobe.boxed,
                 seen if seen & scene::Light::PAINTED != 0 => 1.0 - lobe.shown,
                 _ => lobe.unmirrored,
             };
@@ -409,7 +411,8 @@ pub(crate) fn seen_as(lights: &Lights, light: &Light) -> u32 {
     if light.lamp || lights.sun_is(light) {
         scene::Light::SEEN
     } else if lights.studio || lights.surroundings_show(light) {
-        scene::Light::SEEN | scene::Light::PAINTED
+        let boxed = if lights.studio { scene::Light::BOXED } else { 0 };
+        scene::Light::SEEN | scene::Light::PAINTED | boxed
     } else if lights.is_shown(light) {
         scene::Light::SEEN | scene::Light::SURFACE | if light.visible { scene::Light::CAMERA } else { 0 }
     } else {

@@ -126,8 +126,9 @@ DEVICE Vec3 reflected_by_facets(const Surface &surface, const Light &light, Vec3
     const float cosine = dot(surface.normal, direction);
     if (cosine <= 0.0f)
         return splat(0.0f);
-    const bool painted = (light.seen & Light::PAINTED) != 0;
-    const float share = !light.seen ? 1.0f : painted ? 1.0f - surface.material->shown : surface.material->unmirrored;
+    const Material &own = *surface.material;
+    const bool painted = (light.seen & Light::PAINTED) != 0, boxed = (light.seen & Light::BOXED) != 0;
+    const float share = !light.seen ? 1.0f : boxed ? 1.0f - own.boxed : painted ? 1.0f - own.shown : own.unmirrored;
     const Vec3 lobe = facets_toward(*surface.material, surface.normal, surface.view, direction, part / distance);
     const float soft = softened(surface, direction, cosine);
     return strength(light, direction, distance) * (soft * surface.material->kd + (soft * share) * lobe);

@@ -23,6 +23,8 @@ struct TintSources {
 struct Sighting {
     Vec3 origin, direction;
     Cone cone;
+    // Whether it is in a mirror.
+    bool mirrored;
 };
 
 // The axes of the footprint at `hit`, in texture coordinates.
@@ -68,7 +70,7 @@ DEVICE TintSources tint_sources(const Scene &scene) {
 // What ray number `ray` goes along.
 DEVICE Sighting sighting_of(const Rays &rays, unsigned ray) {
     const Ray along = ray_at(rays, ray);
-    return Sighting{along.origin, along.direction, cone_of(rays, ray)};
+    return Sighting{along.origin, along.direction, cone_of(rays, ray), is_mirrored(rays, ray)};
 }
 
 // The hits of the samples of a pixel: `count` of them, `stride` apart; those whose bits are set in `shared` count.

@@ -90,7 +90,7 @@ DEVICE void face(const TintSources &sources, const Sighting &from, const Hit &hi
     const Cone cone = cone_after(from.cone, hit.t);
     const float turn = is_point(cone) ? 0.0f : curvature(sources.triangles, sources.normals, sources.indices, hit, corners, point.normal);
     const float spread = is_point(cone) ? 0.0f : fabsf(cone_reflected(cone, turn).spread);
-    set_facets(sources.facet_table, FacetSight{dot(normal, -from.direction), spread, followed}, own);
+    set_facets(sources.facet_table, FacetSight{dot(normal, -from.direction), spread, followed, from.mirrored}, own);
 }
 
 // Sets `own` to the material with its coefficients at `hit`.

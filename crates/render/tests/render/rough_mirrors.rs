@@ -1,9 +1,9 @@
 //! Rough floors mirror what is above them as the formula of facets says: rays in some directions, with highlights of lights.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lightmesh_render::internals::shading::{Coefficients, Lobe, Sight};
-use lightmesh_render::{Frame, Settings};
-use lightmesh_scene::{Camera, Facets, Falloff, Light, Material, Scene};
+use lightmesh_render::{AmbientSource, Frame, Quality, Settings};
+use lightmesh_scene::{Camera, Facets, Falloff, Light, Lighting, Lights, Material, Scene, Up};
 use lightmesh_testkit::{SceneDraft, render};
 
 const EYE: Vec3 = Vec3::new(0.0, 1.0, 2.0);
@@ -48,7 +48,7 @@ fn expected(roughness: f32) -> f32 {
         all: none,
         mirrored: none,
     };
-    let sight = Sight { cosine: eye.y, spread: 0.0, followed: false };
+    let sight = Sight { cosine: eye.y, spread: 0.0, followed: false, mirrored: false };
     let lobe = Lobe::new(&metal(roughness).0, &mut coefficients, &sight);
     let place = |index: i32, half: f32| half * (2.0 * (index as f32 + 0.5) / STEPS as f32 - 1.0);
     let part = |index: i32| {
@@ -115,5 +115,30 @@ fn neighbouring_pixels_err_in_different_directions() {
         let blocks = (0..36).map(|index| (block(index % 6, index / 6) - mean).powi(2));
         let together = (blocks.sum::<f32>() / 36.0).sqrt();
         assert!(together < 0.18 * single, "{roughness}: {together} of {single}");
+    }
+}
+
+/// Metals in a studio show its soft boxes, not the key light that stands for one of them: nothing is brighter than its panorama, also where what is
+/// seen in a mirror mirrors nothing more.
+#[test]
+fn metals_in_a_studio_are_no_brighter_than_its_panorama() {
+    let draft = SceneDraft::new().painted(metal(0.2).1).floor(0.0, 4.0).painted(metal(0.1).1);
+    let balls = draft.smooth_ball(DVec3::new(0.0, 0.8, 0.0), 0.8, [24, 48]).smooth_ball(
+        DVec3::new(1.2, 0.5, 1.0),
+        0.5,
+        [24, 48],
+    );
+    let mut scene = balls.camera([2.0, 3.0, 5.0], [0.3, 0.5, 0.2]).finish("pieces");
+    scene.lights = Lights::default();
+    scene.complete_with(Lighting::Studio, Up::Y, 1.0);
+    assert!(scene.lights.studio);
+    let texels = scene.lights.environment.as_ref().unwrap().texels();
+    let most = texels.iter().map(|texel| Vec3::from_array(*texel).max_element()).fold(0.0, f32::max);
+    let settings = Settings::default().with_aa(4).with_size([60, 40]).with_quality(Quality::Draft);
+    let settings = settings.with_ambient_light(AmbientSource::Constant);
+    for bounces in [1, 2] {
+        let frame = render(&scene, &settings.clone().with_bounces(bounces));
+        let brightest = frame.color().iter().map(|color| Vec3::from_array(*color).max_element()).fold(0.0, f32::max);
+        assert!(brightest > 0.2 * most && brightest <= 1.02 * most, "{brightest}, {most}");
     }
 }

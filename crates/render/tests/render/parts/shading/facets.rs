@@ -24,7 +24,7 @@ fn coefficients(base: Vec3, layer: Vec3) -> Coefficients {
 }
 
 fn sight(cosine: f32) -> Sight {
-    Sight { cosine, spread: 0.0, followed: false }
+    Sight { cosine, spread: 0.0, followed: false, mirrored: false }
 }
 
 /// ∫ f cos over the hemisphere by brute force, for an eye at this cosine.
