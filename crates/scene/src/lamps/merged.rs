@@ -41,7 +41,9 @@ pub(super) fn merged(mut lights: Vec<Light>) -> Vec<Light> {
         (least.min(place(light)), most.max(place(light)))
     });
     let scale = 0.5 * FACING * (most - least).length();
-    let rounded = |value: f32| (value / (HAIR * scale)).round() * (HAIR * scale);
+    let (hair, slack) = (HAIR * scale, SLACK * HAIR * scale);
+    // Without an extent there is nothing to be rounded.
+    let rounded = |value: f32| if hair > 0.0 { (value / hair).round() * hair } else { value };
     let point = |light: &Light| -> [f32; 6] {
         let (place, facing) = (place(light), scale * light.surface.unwrap_or_default());
         [place.x, place.y, place.z, facing.x, facing.y, facing.z].map(rounded)
@@ -55,20 +57,22 @@ pub(super) fn merged(mut lights: Vec<Light>) -> Vec<Light> {
         });
         let sides = ends.map(|[low, high]| high - low);
         let longest = sides.iter().copied().fold(0.0, f32::max);
-        let axis = (0..6).find(|&axis| sides[axis] >= longest - SLACK * HAIR * scale).unwrap_or(0);
+        let axis = (0..6).find(|&axis| sides[axis] >= longest - slack).unwrap_or(0);
         let strength: f32 = members.iter().map(|&member| power(&lights[member]).element_sum()).sum();
         let is_one = members.len() < 2;
-        let wrong = if is_one { -1.0 } else { strength * sides.iter().map(|side| side * side).sum::<f32>() };
+        // The maximum turns what is undefined, such as an infinite strength in one place, into zero.
+        let wrong = if is_one { -1.0 } else { (strength * sides.iter().map(|side| side * side).sum::<f32>()).max(0.0) };
         Group { members, axis, middle: 0.5 * (ends[axis][0] + ends[axis][1]), wrong }
     };
     let mut groups = vec![group((0..lights.len()).collect())];
     while groups.len() < LIGHTS {
-        let most = groups.iter().fold(-1.0, |most: f32, group| most.max(group.wrong));
-        let is_worst = |group: &Group| group.wrong >= most - ALIKE * most.abs();
+        // As there are more lights than groups, one has several.
+        let most = groups.iter().fold(0.0, |most: f32, group| most.max(group.wrong));
+        let is_worst = |group: &Group| group.wrong >= (1.0 - ALIKE) * most;
         let worst = groups.iter().position(is_worst).expect("one is the worst");
         let Group { mut members, axis, middle, .. } = groups.swap_remove(worst);
         let (mut low, mut high): (Vec<usize>, Vec<usize>) =
-            members.iter().partition(|&&member| points[member][axis] <= middle + SLACK * HAIR * scale);
+            members.iter().partition(|&&member| points[member][axis] <= middle + slack);
         // All in one place.
         if low.is_empty() || high.is_empty() {
             high = members.split_off(members.len() / 2);

@@ -53,7 +53,8 @@ fn points(wave: &HostWave, ray: usize, count: u32) -> impl Fn(u32) -> [f32; 2] {
     // 2. Those of a pixel follow each other: of its first sample, or of the only one, and so on.
     let samples = if list.sample(ray) == 0 { 1 } else { wave.job.pixel_samples.next_power_of_two() };
     let directions = if list.is_mirrored(ray) { MOST_DIRECTIONS } else { count };
-    let first = (place * samples * directions).wrapping_add(list.number_in_pixel(ray) * count);
+    // Of very many samples it does not matter where the numbers begin anew.
+    let first = place.wrapping_mul(samples * directions).wrapping_add(list.number_in_pixel(ray) * count);
     move |number| {
         let point = pattern.point(first.wrapping_add(number));
         [point.x, point.y]

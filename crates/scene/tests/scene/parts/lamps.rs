@@ -437,3 +437,22 @@ fn which_lights_are_merged_depends_neither_on_order_nor_on_rounding() {
         assert!(apart < 1e-3 && (one.intensity.x / other.intensity.x - 1.0).abs() < 1e-3, "{one:?} {other:?}");
     }
 }
+
+#[test]
+fn lamps_in_one_place_are_merged() {
+    let panel = quad([[-1.0, 4.0, -0.5], [1.0, 4.0, -0.5], [1.0, 4.0, 0.5], [-1.0, 4.0, 0.5]]);
+    let mut geometry = room(&panel);
+    geometry.materials[1].one_sided = true;
+    // A material each, so that each is a lamp of its own.
+    let lamp = geometry.materials[1].clone();
+    for number in 2..=150 {
+        let first = geometry.mesh.positions.len() as u32;
+        geometry.mesh.positions.extend(panel.iter().flatten().copied().map(Vec3::from_array));
+        geometry.mesh.triangles.extend([[first, first + 1, first + 2], [first + 3, first + 4, first + 5]]);
+        geometry.mesh.materials.extend([number; 2]);
+        geometry.materials.push(lamp.clone());
+    }
+    let lights = lamps(&mut geometry);
+    assert_eq!(lights.len(), LIGHTS);
+    assert!((total(&lights) / (150.0 * 4.0) - 1.0).abs() < 1e-4, "{}", total(&lights));
+}
