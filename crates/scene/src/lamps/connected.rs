@@ -21,22 +21,20 @@ pub(super) struct Triangle {
     /// The mean over its channels and texels of what it emits.
     pub(super) radiance: f64,
     is_instanced: bool,
-    /// Its number in its lamp.
-    number: usize,
+    /// Its corners as numbers: equal ones are one.
+    places: [Place; 3],
 }
 
 /// Triangles that share corners.
 #[derive(Debug, Default)]
 pub(super) struct Lamp {
     pub(super) triangles: Vec<Triangle>,
-    /// Their corners as numbers: equal ones are one.
-    places: Vec<[Place; 3]>,
     /// Whether only the front emits: where corners are counter-clockwise.
     pub(super) one_sided: bool,
 }
 
 /// A corner, rounded.
-pub(super) type Place = [i64; 3];
+type Place = [i64; 3];
 
 /// The lamps of each material that is marked, in the order of materials.
 pub(super) fn lamps(geometry: &Geometry, scene: &Extent) -> Vec<(u32, Vec<Lamp>)> {
@@ -48,14 +46,15 @@ pub(super) fn lamps(geometry: &Geometry, scene: &Extent) -> Vec<(u32, Vec<Lamp>)
         let material = geometry.mesh.materials[stored] as usize;
         if let Some(glow) = &glows[material] {
             let radiance = glow.of_triangle(&geometry.mesh, stored).element_sum() / 3.0;
-            triangles[material].push(Triangle { corners, stored, radiance, is_instanced, number: 0 });
+            let place = |corner: DVec3| (corner / (WELDED * scene.diagonal)).round().to_array().map(|axis| axis as i64);
+            triangles[material].push(Triangle { corners, stored, radiance, is_instanced, places: corners.map(place) });
         }
     });
     let of_material = |(number, mut triangles): (usize, Vec<Triangle>)| {
         let most = triangles.iter().map(|triangle| triangle.radiance).fold(0.0, f64::max);
         triangles.retain(|triangle| triangle.radiance > f64::from(DARK) * most);
         let one_sided = geometry.materials[number].one_sided;
-        (!triangles.is_empty()).then(|| (number as u32, connected(triangles, one_sided, scene)))
+        (!triangles.is_empty()).then(|| (number as u32, connected(triangles, one_sided)))
     };
     triangles.into_iter().enumerate().filter_map(of_material).collect()
 }
@@ -78,36 +77,36 @@ fn each_triangle(geometry: &Geometry, mut take: impl FnMut(usize, [DVec3; 3], bo
 }
 
 /// The lamps that these triangles form.
-fn connected(triangles: Vec<Triangle>, one_sided: bool, scene: &Extent) -> Vec<Lamp> {
-    let place = |corner: DVec3| (corner / (WELDED * scene.diagonal)).round().to_array().map(|axis| axis as i64);
-    let places: Vec<[Place; 3]> = triangles.iter().map(|triangle| triangle.corners.map(place)).collect();
-    // The first triangle of each lamp, found by the corners of others.
-    let mut leaders: Vec<usize> = (0..triangles.len()).collect();
-    let mut at: HashMap<Place, usize> = HashMap::new();
-    for (index, corners) in places.iter().enumerate() {
-        for corner in corners {
-            let other = *at.entry(*corner).or_insert(index);
-            let (a, b) = (leader(&mut leaders, other), leader(&mut leaders, index));
-            leaders[a.max(b)] = a.min(b);
-        }
-    }
+fn connected(triangles: Vec<Triangle>, one_sided: bool) -> Vec<Lamp> {
+    let firsts = firsts(triangles.iter());
     let mut lamps: Vec<Lamp> = Vec::new();
     let mut numbers: HashMap<usize, usize> = HashMap::new();
-    for (index, (triangle, places)) in triangles.into_iter().zip(places).enumerate() {
-        let first = leader(&mut leaders, index);
+    for (triangle, first) in triangles.into_iter().zip(firsts) {
         let number = *numbers.entry(first).or_insert_with(|| {
             lamps.push(Lamp { one_sided, ..Lamp::default() });
             lamps.len() - 1
         });
-        let lamp = &mut lamps[number];
-        lamp.triangles.push(Triangle { number: lamp.triangles.len(), ..triangle });
-        lamp.places.push(places);
+        lamps[number].triangles.push(triangle);
     }
     lamps
 }
 
+/// Of each triangle, the number of the first of those with which corners connect it.
+pub(super) fn firsts<'t>(triangles: impl ExactSizeIterator<Item = &'t Triangle>) -> Vec<usize> {
+    let mut leaders: Vec<usize> = (0..triangles.len()).collect();
+    let mut at: HashMap<Place, usize> = HashMap::new();
+    for (index, triangle) in triangles.enumerate() {
+        for place in triangle.places {
+            let other = *at.entry(place).or_insert(index);
+            let (a, b) = (leader(&mut leaders, other), leader(&mut leaders, index));
+            leaders[a.max(b)] = a.min(b);
+        }
+    }
+    (0..leaders.len()).map(|index| leader(&mut leaders, index)).collect()
+}
+
 /// The first triangle of those that belong together; ways to it become shorter.
-pub(super) fn leader(leaders: &mut [usize], mut index: usize) -> usize {
+fn leader(leaders: &mut [usize], mut index: usize) -> usize {
     while leaders[index] != index {
         leaders[index] = leaders[leaders[index]];
         index = leaders[index];
@@ -137,11 +136,6 @@ impl Triangle {
 impl Lamp {
     pub(super) fn corners(&self) -> impl Iterator<Item = DVec3> + Clone {
         self.triangles.iter().flat_map(|triangle| triangle.corners)
-    }
-
-    /// The corners of one of its triangles as numbers.
-    pub(super) fn places_of(&self, triangle: &Triangle) -> [Place; 3] {
-        self.places[triangle.number]
     }
 
     pub(super) fn diagonal(&self) -> f64 {
@@ -185,9 +179,9 @@ impl Lamp {
     /// Six times the volume that a closed lamp encloses, negative if its triangles face inwards; `None` for an open one.
     pub(super) fn volume(&self) -> Option<f64> {
         let mut edges: HashMap<[Place; 2], i32> = HashMap::new();
-        for corners in &self.places {
+        for Triangle { places, .. } in &self.triangles {
             for edge in 0..3 {
-                let [a, b] = [corners[edge], corners[(edge + 1) % 3]];
+                let [a, b] = [places[edge], places[(edge + 1) % 3]];
                 // The triangles at the poles of balls are often needles.
                 if a == b {
                     continue;

@@ -63,16 +63,14 @@ impl<'g> Glow<'g> {
             mesh.triangles[stored].map(|vertex| mesh.opacities.get(vertex as usize).copied().unwrap_or(1.0));
         let own = f64::from(opacities.iter().sum::<f32>()) / 3.0;
         let images = [self.image, self.holes];
-        let Some(corners) =
-            self.has_image().then(|| images.map(|image| image.map(|image| image.corners(mesh, stored, shares))))
-        else {
-            return self.emission * self.left(own, None);
-        };
+        let corners = images.map(|image| image.map(|image| image.corners(mesh, stored, shares)));
         // 1. The texels of the image that has more of them there count; the other one's are those in their middles.
         let texels =
             |corners: Option<[DVec2; 3]>| corners.map_or(-1.0, |[a, b, c]| 0.5 * (b - a).perp_dot(c - a).abs());
         let finer = usize::from(texels(corners[1]) > texels(corners[0]));
-        let all = corners[finer].expect("one of both is there");
+        let Some(all) = corners[finer] else {
+            return self.emission * self.left(own, None);
+        };
         let seen = |shares: DVec3| {
             let texel = |which: usize| {
                 let at = |corners: [DVec2; 3]| (0..3).map(|corner| shares[corner] * corners[corner]).sum::<DVec2>();

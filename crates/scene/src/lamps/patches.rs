@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
-use super::connected::{Lamp, Triangle, is_lit, leader};
+use super::connected::{Lamp, Triangle, firsts, is_lit};
 use super::glow::Glow;
 use super::pieces::Piece;
 use super::{Extent, pieces};
@@ -57,16 +57,7 @@ impl Lamp {
     /// The parts of a patch that lie behind each other.
     fn at_heights<'l>(&self, patch: Patch<'l>) -> Vec<Patch<'l>> {
         // 1. The parts that are connected.
-        let mut leaders: Vec<usize> = (0..patch.triangles.len()).collect();
-        let mut at = HashMap::new();
-        for (index, triangle) in patch.triangles.iter().enumerate() {
-            for place in self.places_of(triangle) {
-                let other = *at.entry(place).or_insert(index);
-                let (a, b) = (leader(&mut leaders, other), leader(&mut leaders, index));
-                leaders[a.max(b)] = a.min(b);
-            }
-        }
-        let firsts: Vec<usize> = (0..leaders.len()).map(|index| leader(&mut leaders, index)).collect();
+        let firsts = firsts(patch.triangles.iter().copied());
         if firsts.iter().all(|&first| first == 0) {
             return vec![patch];
         }
@@ -148,8 +139,10 @@ impl Lamp {
         // 2. Of a bent surface, the image is not cut.
         let cuts_image = glow.has_image() && patches.len() <= 2;
         let is_closed = self.one_sided || self.volume().is_some();
-        let is_lit = |patch: &Patch| patch.is_lit(geometry, scene);
-        let is_room = !self.one_sided && self.is_alone(&geometry.mesh) && !patches.iter().any(is_lit);
+        let is_room = is_closed
+            && !self.one_sided
+            && self.is_alone(&geometry.mesh)
+            && !patches.iter().any(|patch| patch.is_lit(geometry, scene));
         let sides = |patch| match is_closed {
             true if is_room => both(patch).into(),
             true => vec![patch],
