@@ -9,15 +9,16 @@ use std::time::Duration;
 
 use libfuzzer_sys::fuzz_target;
 use lightmesh::scene::SkyKind;
-
-// The program's own modules: they need nothing else of it.
-#[path = "../../crates/cli/src/value/mod.rs"]
-mod value;
-
-use value::{
-    Background, Bound, Budget, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames,
-    LightSpec, Positive, Size, SkySpec, Smooth, SunSpec, clock, numbered,
+use lightmesh::request::value::{
+    Background, Bound, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec, Positive,
+    Size, SkySpec, Smooth, SunSpec, ValueError, clock, numbered,
 };
+
+// The program's own module: it needs nothing else of it.
+#[path = "../../crates/cli/src/budget.rs"]
+mod budget;
+
+use budget::Budget;
 
 /// Messages quote a part of the text and explain the rest.
 const EXPLANATION: usize = 200;
@@ -121,16 +122,11 @@ fn read_places(text: &str) {
         let alone = if spec.alone { ";alone" } else { "" };
         format!("{};rotation={};strength={}{alone}", spec.file.display(), spec.rotation, spec.strength)
     });
-    if let Some(CameraView { position, direction, vfov }) = parsed(text) {
-        assert!(position.as_vec3().is_finite() && direction.normalize().is_finite());
-        assert!(vfov > 0.0 && vfov < 180.0);
-        // A target is not kept, only the way to it: one along an axis, so far away that it can be told from the position.
-        let [x, y, z] = position.to_array();
-        let target = if x.abs() < 1.0 { x + 2.0 } else { -x };
-        let written = format!("{x},{y},{z};{target},{y},{z};{vfov}");
-        let again = parsed::<CameraView>(&written).map(|view| (view.position, view.vfov));
-        assert_eq!(again, Some((position, vfov)), "{text:?} is written as {written}");
-    }
+    read::<CameraView>(text, |view| {
+        assert!(view.position.as_vec3().is_finite() && view.direction().normalize().is_finite());
+        assert!(view.vfov > 0.0 && view.vfov < 180.0);
+        view.to_string()
+    });
 }
 
 fn color(Color(color): &Color) -> String {
@@ -140,13 +136,13 @@ fn color(Color(color): &Color) -> String {
 }
 
 /// Reads a value; what `write` makes of it must be read as the same.
-fn read<T: FromStr<Err = value::ValueError> + PartialEq + Debug>(text: &str, write: impl Fn(&T) -> String) {
+fn read<T: FromStr<Err = ValueError> + PartialEq + Debug>(text: &str, write: impl Fn(&T) -> String) {
     let Some(value) = parsed::<T>(text) else { return };
     let written = write(&value);
     assert_eq!(written.parse().as_ref(), Ok(&value), "{text:?} is written as {written}");
 }
 
-fn parsed<T: FromStr<Err = value::ValueError>>(text: &str) -> Option<T> {
+fn parsed<T: FromStr<Err = ValueError>>(text: &str) -> Option<T> {
     let refused = match text.parse() {
         Ok(value) => return Some(value),
         Err(refused) => refused,

@@ -2,15 +2,12 @@
 
 use lightmesh::render::accel::{GridError, GridSaveError};
 use lightmesh::render::{MeshFault, MeshFileError, MeshSaveError};
+use lightmesh::request::files::OutputError;
+use lightmesh::request::{Error, RequestError, StageError, Told, Words};
 use lightmesh::scene::{EnvironmentError, ExportError, SceneFormat};
 use lightmesh::{LoadError, RenderError, SaveError, image};
-use lightmesh_bench::BenchError;
-use lightmesh_bench::report::ReportError;
-
-use crate::manifest::ManifestError;
-use crate::output::OutputError;
-use crate::plan::{ChoiceError, PlanError};
-use crate::run::MovieError;
+#[cfg(feature = "bench")]
+use lightmesh_bench::{BenchError, report::ReportError};
 
 /// A comparison exceeded its threshold.
 pub(crate) const EXCEEDED: u8 = 1;
@@ -26,55 +23,27 @@ pub(crate) const INTERRUPTED: u8 = 130;
 /// Why a run ended early. The message is one sentence: what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    #[error(transparent)]
-    Manifest(#[from] ManifestError),
-    #[error(transparent)]
-    Movie(#[from] MovieError),
-    /// A film ended early.
-    #[error("frame {number} of {last}: {cause}{}", what_is_there(*finished, flag))]
-    Frame {
-        /// The frame that failed.
-        number: u32,
-        /// The film's last one.
-        last: u32,
-        /// How many frames that were asked for are there.
-        finished: usize,
-        /// The flag that goes on with them.
-        flag: &'static str,
-        /// Why.
-        cause: Box<Failure>,
-    },
-    #[error(transparent)]
-    Load(#[from] LoadError),
-    #[error(transparent)]
-    Choice(#[from] ChoiceError),
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    #[error(transparent)]
-    Save(#[from] SaveError),
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    /// The work on a request.
+    #[error("{}", .0.told(Words::Flags))]
+    Request(Error),
     #[error(transparent)]
     Grid(#[from] GridError),
     #[error(transparent)]
     GridSave(#[from] GridSaveError),
-    #[error(transparent)]
-    Mesh(#[from] MeshFileError),
-    #[error(transparent)]
-    MeshSave(#[from] MeshSaveError),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error(transparent)]
     Picture(#[from] image::LoadError),
     #[error(transparent)]
     Compare(#[from] image::CompareError),
+    #[cfg(feature = "bench")]
     #[error(transparent)]
     Bench(Box<BenchError>),
+    #[cfg(feature = "bench")]
     #[error(transparent)]
     Report(Box<ReportError>),
     /// Results or a report could not be written.
+    #[cfg(feature = "bench")]
     #[error(transparent)]
     Kept(#[from] lightmesh_bench::OutputError),
     /// A measure of a comparison exceeds its threshold.
@@ -105,26 +74,32 @@ fn scene_formats() -> String {
     names.join(", ")
 }
 
-/// What is there of a film, and how to go on.
-fn what_is_there(count: usize, flag: &str) -> String {
-    match count {
-        0 => String::new(),
-        1 => format!("; 1 frame is finished ({flag} goes on)"),
-        count => format!("; {count} frames are finished ({flag} goes on)"),
-    }
+/// What the library reports, as the error of a request.
+macro_rules! of_request {
+    ($($error:ty),*) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Failure {
+                Failure::Request(error.into())
+            }
+        })*
+    };
 }
 
+of_request!(Error, RequestError, LoadError, RenderError, SaveError, OutputError);
+
+#[cfg(feature = "bench")]
 impl From<BenchError> for Failure {
     fn from(error: BenchError) -> Failure {
         match error {
             // The exit code of the render that failed.
-            BenchError::Render(error) => Failure::Render(error),
-            BenchError::Scene(error) => Failure::Load(error),
+            BenchError::Render(error) => error.into(),
+            BenchError::Scene(error) => error.into(),
             other => Failure::Bench(Box::new(other)),
         }
     }
 }
 
+#[cfg(feature = "bench")]
 impl From<ReportError> for Failure {
     fn from(error: ReportError) -> Failure {
         Failure::Report(Box::new(error))
@@ -132,44 +107,40 @@ impl From<ReportError> for Failure {
 }
 
 impl Failure {
-    /// What happened to frame `number` of a film up to `last`, of which some are `finished`: `flag` goes on with them.
-    pub(crate) fn in_frame(self, number: u32, last: u32, finished: usize, flag: &'static str) -> Failure {
-        match self {
-            Failure::Render(RenderError::Cancelled) => self,
-            cause => Failure::Frame { number, last, finished, flag, cause: Box::new(cause) },
-        }
-    }
-
     /// The exit code.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Exceeded(_) => EXCEEDED,
-            Failure::Frame { finished: 0, cause, .. } => cause.exit_code(),
-            Failure::Frame { .. } => PARTIAL,
-            Failure::Signals(_) => UNABLE,
-            Failure::Render(error) => match error {
-                RenderError::Cancelled => INTERRUPTED,
-                RenderError::Memory { .. }
-                | RenderError::BuildMemory { .. }
-                | RenderError::TextureMemory { .. }
-                | RenderError::Grid(GridError::Memory { .. })
-                | RenderError::Threads { .. }
-                | RenderError::Device { .. }
-                | RenderError::DeviceMemory { .. }
-                | RenderError::DeviceFault { .. } => UNABLE,
-                _ => BAD_INPUT,
-            },
-            Failure::Load(error)
-                if matches!(error.root(), LoadError::Memory { .. } | LoadError::SmoothMemory { .. }) =>
-            {
-                UNABLE
-            }
-            Failure::Choice(ChoiceError::Environment(EnvironmentError::Memory { .. })) => UNABLE,
-            Failure::Grid(GridError::Memory { .. })
-            | Failure::Mesh(MeshFileError { fault: MeshFault::Memory(_), .. })
-            | Failure::MeshSave(MeshSaveError::Device { .. }) => UNABLE,
+            Failure::Signals(_) | Failure::Grid(GridError::Memory { .. }) => UNABLE,
+            Failure::Request(error) => exit_code_of(error),
             _ => BAD_INPUT,
         }
+    }
+}
+
+/// The exit code of work on a request that ended early.
+fn exit_code_of(error: &Error) -> u8 {
+    match error {
+        Error::Frame { finished: 0, cause, .. } => exit_code_of(cause),
+        Error::Frame { .. } => PARTIAL,
+        Error::Render(RenderError::Cancelled) => INTERRUPTED,
+        Error::Render(
+            RenderError::Memory { .. }
+            | RenderError::BuildMemory { .. }
+            | RenderError::TextureMemory { .. }
+            | RenderError::Grid(GridError::Memory { .. })
+            | RenderError::Threads { .. }
+            | RenderError::Device { .. }
+            | RenderError::DeviceMemory { .. }
+            | RenderError::DeviceFault { .. },
+        )
+        | Error::Stage(StageError::Environment(EnvironmentError::Memory { .. }))
+        | Error::Mesh(MeshFileError { fault: MeshFault::Memory(_), .. })
+        | Error::MeshSave(MeshSaveError::Device { .. }) => UNABLE,
+        Error::Load(error) if matches!(error.root(), LoadError::Memory { .. } | LoadError::SmoothMemory { .. }) => {
+            UNABLE
+        }
+        _ => BAD_INPUT,
     }
 }
 
@@ -192,12 +163,10 @@ mod tests {
         assert_eq!(codes, [UNABLE, UNABLE, UNABLE, UNABLE, BAD_INPUT, INTERRUPTED]);
         assert_eq!(Failure::Exceeded("RMSE".into()).exit_code(), EXCEEDED);
         let frame = |finished| {
-            let cause = Failure::from(RenderError::Device { device: "cuda".into(), reason: "none".into() });
-            cause.in_frame(3, 9, finished, "--resume")
+            let cause = Box::new(Error::from(RenderError::Device { device: "cuda".into(), reason: "none".into() }));
+            Failure::from(Error::Frame { number: 3, last: 9, finished, goes_on: "resume", cause })
         };
         assert_eq!([0, 2].map(|finished| frame(finished).exit_code()), [UNABLE, PARTIAL]);
         assert!(frame(2).to_string().ends_with("; 2 frames are finished (--resume goes on)"));
-        let cancelled = Failure::from(RenderError::Cancelled).in_frame(3, 9, 2, "--resume");
-        assert_eq!(cancelled.exit_code(), INTERRUPTED);
     }
 }

@@ -4,47 +4,37 @@
 
 use lightmesh::render::Setting;
 use lightmesh::render::accel::GridError;
+use lightmesh::request::{Error, RequestError, Words};
 use lightmesh::{LoadError, RenderError, SaveError};
-use lightmesh_bench::BenchError;
-use lightmesh_bench::report::ReportError;
+#[cfg(feature = "bench")]
+use lightmesh_bench::{BenchError, report::ReportError};
 
 use crate::failure::Failure;
-use crate::plan::PlanError;
 
-/// The flag of a setting: it has the same name, except for the structure.
+/// The flag of a setting of the renderer: it has the same name, except for the structure.
 pub(crate) fn of(setting: Setting) -> String {
     match setting {
         Setting::Acceleration => "--accel".to_owned(),
-        other => format!("--{}", other.name().replace('_', "-")),
+        other => Words::Flags.of(other.name()),
     }
 }
 
 /// The flags and commands that may solve the problem.
 pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
+    #[cfg(feature = "bench")]
     const RESULTS: &str = "lightmesh bench SUITE --json FILE";
     let fixed: &[&str] = match failure {
-        Failure::Frame { cause, .. } => return that_mend(cause),
-        Failure::Render(RenderError::Grid(GridError::Memory { .. })) | Failure::Grid(GridError::Memory { .. }) => {
-            &["--grid", "--memory-limit"]
-        }
-        Failure::Render(RenderError::Grid(_)) | Failure::Grid(_) => &["--grid"],
-        Failure::Render(RenderError::GridFile(_)) => &["lightmesh grid SCENE -o FILE"],
-        Failure::Render(RenderError::Device { .. }) => &["--device", "lightmesh info --devices"],
-        Failure::Render(error) => return error.settings().into_iter().map(of).collect(),
-        Failure::Plan(PlanError::Save(SaveError::UnknownExtension { .. })) => &["--format"],
-        Failure::Load(error) => match error.root() {
-            LoadError::Memory { .. } => &["--memory-limit"],
-            LoadError::SmoothMemory { .. } => &["--memory-limit", "--smooth off"],
-            LoadError::Outside { .. } => &["--allow-outside"],
-            LoadError::Warnings { .. } => &["--strict"],
-            _ => &[],
-        },
+        Failure::Request(error) => return that_mend_request(error),
+        Failure::Grid(GridError::Memory { .. }) => &["--grid", "--memory-limit"],
+        Failure::Grid(_) => &["--grid"],
+        #[cfg(feature = "bench")]
         Failure::Bench(error) => match **error {
             BenchError::OwnScenes(_) => &["--scene", "--size"],
             BenchError::Malformed { .. } | BenchError::Version { .. } => &[RESULTS],
             BenchError::NothingInCommon { .. } => &["--quick"],
             _ => &[],
         },
+        #[cfg(feature = "bench")]
         Failure::Report(error) => match &**error {
             ReportError::Twice { .. } => &[RESULTS],
             ReportError::Results(error)
@@ -56,7 +46,31 @@ pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
         },
         _ => &[],
     };
-    fixed.iter().map(|&flag| flag.to_owned()).collect()
+    owned(fixed)
+}
+
+fn that_mend_request(error: &Error) -> Vec<String> {
+    owned(match error {
+        Error::Frame { cause, .. } => return that_mend_request(cause),
+        Error::Render(RenderError::Grid(GridError::Memory { .. })) => &["--grid", "--memory-limit"],
+        Error::Render(RenderError::Grid(_)) => &["--grid"],
+        Error::Render(RenderError::GridFile(_)) => &["lightmesh grid SCENE -o FILE"],
+        Error::Render(RenderError::Device { .. }) => &["--device", "lightmesh info --devices"],
+        Error::Render(error) => return error.settings().into_iter().map(of).collect(),
+        Error::Request(RequestError::Save(SaveError::UnknownExtension { .. })) => &["--format"],
+        Error::Load(error) => match error.root() {
+            LoadError::Memory { .. } => &["--memory-limit"],
+            LoadError::SmoothMemory { .. } => &["--memory-limit", "--smooth off"],
+            LoadError::Outside { .. } => &["--allow-outside"],
+            LoadError::Warnings { .. } => &["--strict"],
+            _ => &[],
+        },
+        _ => &[],
+    })
+}
+
+fn owned(flags: &[&str]) -> Vec<String> {
+    flags.iter().map(|&flag| flag.to_owned()).collect()
 }
 
 #[cfg(test)]
@@ -67,7 +81,7 @@ mod tests {
     use crate::args;
 
     #[test]
-    fn every_setting_has_a_flag() {
+    fn every_setting_of_the_renderer_has_a_flag() {
         let cli = args::command();
         let render = cli.find_subcommand("render").unwrap();
         let known: Vec<String> =

@@ -1,26 +1,22 @@
 //! `lightmesh`: the light mesh method on the command line.
 //!
-//! `args` (as typed) ▶ `plan` (validated) ▶ `run` (the work) ▶ exit code, in one direction. Anything that goes wrong is a
-//! `Failure`, which knows its exit code. Results go to standard output; notes, progress and errors go to standard error.
+//! `args` (as typed) ▶ `run` (the work) ▶ exit code, in one direction. What a picture of a file is, and the work on it, is in the library:
+//! [`lightmesh::request`]. Anything that goes wrong is a `Failure`, which knows its exit code. Results go to standard output; notes, progress and
+//! errors go to standard error.
 //!
-//! It is a library so that other programs can contain the command line ([`run_command`]), and take the flags of `lightmesh render` for scenes
-//! and frames of their own ([`request`]).
+//! It is a library so that other programs can contain the command line ([`run_command`]).
 
 mod args;
+#[cfg(feature = "bench")]
+mod budget;
 mod color;
-mod destination;
 mod failure;
 mod flags;
 mod interrupt;
-mod manifest;
 mod memory;
 mod output;
-mod plan;
 mod progress;
-mod report;
-pub mod request;
 mod run;
-mod value;
 
 use std::ffi::OsString;
 use std::panic::{self, PanicHookInfo};
@@ -63,7 +59,7 @@ fn explain(arguments: &[OsString], message: &clap::Error) -> u8 {
 /// Prepares for the ends that may come at any moment.
 fn start(command: &Command) -> Result<(), Failure> {
     interrupt::install()?;
-    Ok(memory::watch(command.reading())?)
+    Ok(memory::watch(command.memory_limit())?)
 }
 
 /// Reports an error; returns the exit code.

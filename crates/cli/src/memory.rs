@@ -9,9 +9,9 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread::{self, Thread};
 use std::time::Duration;
 
+use lightmesh::request::value::ByteSize;
 use lightmesh_memory::{Budget, Bytes, Counting, Refused, held, resident, set_ceiling};
 
-use crate::args::ReadingArgs;
 use crate::failure::UNABLE;
 use crate::interrupt;
 
@@ -25,9 +25,6 @@ const GAPS: u64 = 16;
 /// How long the message may take if the thread that wants memory holds what it waits for.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What messages call the work on the image itself.
-pub(crate) const RENDERING: &str = "rendering";
-
 static REFUSED: OnceLock<Refused> = OnceLock::new();
 /// The thread that ends the program.
 static ENDING: OnceLock<Thread> = OnceLock::new();
@@ -37,10 +34,10 @@ static TASK: Mutex<String> = Mutex::new(String::new());
 /// Whether the command has a flag for the limit.
 static HAS_FLAG: AtomicBool = AtomicBool::new(false);
 
-/// From now on the program holds at most what its flag says; without one, what is free, less a reserve.
-pub(crate) fn watch(reading: Option<ReadingArgs>) -> io::Result<()> {
-    HAS_FLAG.store(reading.is_some(), Ordering::Relaxed);
-    let limit = reading.and_then(|reading| reading.memory_limit).map(|limit| limit.0);
+/// From now on the program holds at most what its flag says, if the command has one; without one, what is free, less a reserve.
+pub(crate) fn watch(flag: Option<Option<ByteSize>>) -> io::Result<()> {
+    HAS_FLAG.store(flag.is_some(), Ordering::Relaxed);
+    let limit = flag.flatten().map(|limit| limit.0);
     let ending = thread::Builder::new().name("memory".to_owned()).spawn(|| {
         loop {
             if let Some(refused) = REFUSED.get() {

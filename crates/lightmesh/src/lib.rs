@@ -5,6 +5,16 @@
 //! the nodes of a lattice, is another [`Lookup`].
 //!
 //! ```no_run
+//! use lightmesh::{Request, render};
+//!
+//! render("garden.toml", &Request::default())?.save("garden.png")?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! This is what `lightmesh render garden.toml -o garden.png` does, to the byte: what the file lacks, a camera, lights, an exposure, is chosen. Below it, a
+//! scene is rendered as it is:
+//!
+//! ```no_run
 //! use lightmesh::{Device, Renderer, Scene, Settings};
 //!
 //! let scene = Scene::open("garden.toml")?;
@@ -16,6 +26,8 @@
 //!
 //! # A tour
 //!
+//! * [`Request`] has a field for each flag of the command line. [`render()`] makes a picture of a file, [`film`] the frames of an animation, a turntable
+//!   or a day, [`sun_hours`] the hours of direct sun on what a picture shows.
 //! * [`Scene`] is what is rendered: open a file or one of the built-in scenes (`builtin:gazebo`, `builtin:childpark`,
 //!   `builtin:garden`), or put triangles together with [`SceneBuilder`](scene::SceneBuilder).
 //! * [`Settings`] are the parameters: [`Mode`] (the method, hard-shadow ray tracing, or the area-shadow reference), image size,
@@ -28,11 +40,13 @@
 //! * [`Frame`] is the image with its [`Stats`]; an [`Observer`] receives progress and can stop the work, and with
 //!   [`Settings::partial`] gets what is finished by then.
 //!
-//! The parts are separate crates, which are re-exported completely as [`scene`], [`image`] and [`render`].
+//! The parts are separate crates, which are re-exported completely as [`scene`], [`image`], [`mod@render`] and [`request`].
 #![forbid(unsafe_code)]
 
 pub use lightmesh_image as image;
 pub use lightmesh_render as render;
+#[cfg(feature = "request")]
+pub use lightmesh_request as request;
 pub use lightmesh_scene as scene;
 
 pub use lightmesh_image::{SaveError, Transfer};
@@ -40,6 +54,8 @@ pub use lightmesh_render::{
     Acceleration, Device, Frame, Lookup, MeshCache, MeshFileError, MeshSaveError, Mode, Observer, PointVisibility,
     RenderError, Renderer, Settings, Stage, Stats, Step,
 };
+#[cfg(feature = "request")]
+pub use lightmesh_request::{Request, film, picture as render, sun_hours};
 /// The vectors and matrices of this library's types.
 pub use lightmesh_scene::glam;
 pub use lightmesh_scene::{LoadError, Scene};

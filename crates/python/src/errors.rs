@@ -1,9 +1,9 @@
 //! Exceptions: which class stands for which error. The classes are Python's own, in `_errors.py`.
 
-use lightmesh::render::{MeshFileError, MeshSaveError};
+use lightmesh::render::{MeshFileError, MeshSaveError, Setting};
+use lightmesh::request::{Error, RequestError, StageError};
 use lightmesh::scene::{CameraError, EnvironmentError, GeometryError, LightError};
 use lightmesh::{LoadError, RenderError, SaveError};
-use lightmesh_cli::request::{ChoiceError, RequestError, flag_of};
 use lightmesh_files::visible;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -63,16 +63,17 @@ impl IntoException for RequestError {
     fn into_exception(self) -> PyErr {
         match self {
             RequestError::Unknown { name, similar } => {
-                let underscored = |name: &str| name.replace('-', "_");
-                let similar = similar.map_or(String::new(), |name| format!(". Did you mean '{}'?", underscored(&name)));
-                PyTypeError::new_err(format!("unexpected keyword argument '{}'{similar}", underscored(&name)))
+                let similar = similar.map_or(String::new(), |name| format!(". Did you mean '{name}'?"));
+                PyTypeError::new_err(format!("unexpected keyword argument '{name}'{similar}"))
             }
+            RequestError::Save(error) => error.into_exception(),
+            RequestError::Output(_) => class::SaveError::new_err(text(&self)),
             other => setting(text(&other)),
         }
     }
 }
 
-impl IntoException for ChoiceError {
+impl IntoException for StageError {
     fn into_exception(self) -> PyErr {
         setting(text(&self))
     }
@@ -115,8 +116,7 @@ impl IntoException for CameraError {
 impl IntoException for RenderError {
     fn into_exception(self) -> PyErr {
         // The message, and the keyword arguments that may mend it.
-        let names = self.settings().into_iter().map(|setting| flag_of(setting)[2..].replace('-', "_"));
-        let names = names.collect::<Vec<_>>().join(", ");
+        let names = self.settings().into_iter().map(keyword).collect::<Vec<_>>().join(", ");
         let message = text(&self);
         let message = if names.is_empty() { message } else { format!("{message} ({names})") };
         match self {
@@ -137,6 +137,34 @@ impl IntoException for RenderError {
             | RenderError::GridFile(_)
             | RenderError::Threads { .. } => class::SettingError::new_err(message),
             _ => class::LightmeshError::new_err(message),
+        }
+    }
+}
+
+/// The keyword argument for a setting of the renderer.
+fn keyword(setting: Setting) -> &'static str {
+    if setting == Setting::Acceleration { "accel" } else { setting.name() }
+}
+
+impl IntoException for Error {
+    fn into_exception(self) -> PyErr {
+        match self {
+            Error::Request(error) => error.into_exception(),
+            Error::Load(error) => error.into_exception(),
+            Error::Stage(error) => error.into_exception(),
+            Error::Render(error) => error.into_exception(),
+            Error::Save(error) => error.into_exception(),
+            Error::Mesh(error) => error.into_exception(),
+            Error::MeshSave(error) => error.into_exception(),
+            Error::Output(_) | Error::Movie(_) | Error::Manifest(_) => class::SaveError::new_err(text(&self)),
+            // The class of what happened, with what is said of the film.
+            Error::Frame { number, last, finished, goes_on, cause } => {
+                let error = Error::Frame { number, last, finished, goes_on, cause };
+                let message = text(&error);
+                let cause = error.into_cause().into_exception();
+                Python::attach(|py| PyErr::from_type(cause.get_type(py), (message,)))
+            }
+            other => class::LightmeshError::new_err(text(&other)),
         }
     }
 }

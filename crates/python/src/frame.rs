@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
+use glam::Vec3;
 use lightmesh::image::{Description, Format, Layers, publish};
+use lightmesh::request::film::RenderedFrame;
+use lightmesh::request::{StoragePlan, describe};
 use lightmesh::scene;
 use lightmesh::{Frame as Rendered, Scene};
-use lightmesh_cli::request::{self, StorageRequest};
 use lightmesh_files::visible;
 use numpy::ndarray::{ArrayView2, ArrayView3};
 use numpy::{Element, PyArray2, PyArray3, PyArrayMethods};
@@ -14,8 +16,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors::OrRaise;
-use crate::flags;
 use crate::mattes::{Mattes, Which};
+use crate::settings::{self, SAVE};
 
 /// A rendered image. Its arrays are views into it that cannot be written; row 0 is the top. Those from `depth` on exist if it was
 /// rendered with `layers=True`.
@@ -26,6 +28,10 @@ pub(crate) struct Frame {
     stops: f32,
     notes: Vec<String>,
     description: Description,
+    /// Its number in a film, if it is of one.
+    number: Option<u32>,
+    /// The time of day in a sun study.
+    when: String,
 }
 
 /// A read-only view of a plane, one value per pixel; `owner` has it.
@@ -66,8 +72,16 @@ impl Frame {
     /// A frame of a scene as it was rendered.
     pub(crate) fn new(rendered: Rendered, stops: f32, notes: Vec<String>, world: &Scene) -> Frame {
         let camera: Option<&scene::Camera> = world.cameras.first();
-        let description = request::description(&rendered, world, camera);
-        Frame { rendered, stops, notes, description }
+        let description = describe(&rendered, world.to_world(Vec3::ZERO), camera);
+        Frame { rendered, stops, notes, description, number: None, when: String::new() }
+    }
+
+    /// A frame of a film.
+    pub(crate) fn of_film(
+        RenderedFrame { number, when, scene, frame, stops }: RenderedFrame,
+        notes: Vec<String>,
+    ) -> Frame {
+        Frame { number: Some(number), when, ..Frame::new(frame, stops, notes, &scene) }
     }
 
     pub(crate) fn layers(&self) -> PyResult<&Layers> {
@@ -79,8 +93,8 @@ impl Frame {
     }
 
     fn options(&self, settings: Option<&Bound<'_, PyDict>>) -> PyResult<lightmesh::image::SaveOptions> {
-        let request = StorageRequest::new(&flags::of(settings)?).or_raise()?;
-        Ok(request.options(&self.rendered, self.stops, self.description.clone()))
+        let request = settings::of(settings, SAVE)?;
+        Ok(StoragePlan::new(&request).options(&self.rendered, self.stops, self.description.clone()))
     }
 }
 
@@ -180,6 +194,18 @@ impl Frame {
     #[getter]
     fn exposure(&self) -> f32 {
         self.stops
+    }
+
+    /// Its number in a film; `None` for a picture.
+    #[getter]
+    fn number(&self) -> Option<u32> {
+        self.number
+    }
+
+    /// The time of day in a film of a sun study, as in "06:15"; else empty.
+    #[getter]
+    fn when(&self) -> &str {
+        &self.when
     }
 
     /// All, unless the render was stopped with `partial=True`.

@@ -1,6 +1,6 @@
 //! The Python package `lightmesh`, see `python/lightmesh/_lightmesh.pyi` for what each class promises.
 //!
-//! Classes wrap the types of the Rust library; flags of the command line are keyword arguments ([`flags`]). Arrays of frames are views of the frame's
+//! Classes wrap the types of the Rust library; settings of a request are keyword arguments ([`settings`]). Arrays of frames are views of the frame's
 //! own memory. Whatever takes time runs on another thread while the interpreter is free ([`watch`]).
 
 mod cache;
@@ -9,7 +9,7 @@ mod convert;
 mod devices;
 mod environment;
 mod errors;
-mod flags;
+mod film;
 mod frame;
 mod geometry;
 mod light;
@@ -17,6 +17,7 @@ mod material;
 mod mattes;
 mod renderer;
 mod scene;
+mod settings;
 mod texture;
 mod watch;
 
@@ -35,6 +36,8 @@ mod _lightmesh {
     use crate::devices::{command, devices};
     #[pymodule_export]
     use crate::environment::Environment;
+    #[pymodule_export]
+    use crate::film::{Film, SunHours};
     #[pymodule_export]
     use crate::frame::Frame;
     #[pymodule_export]

@@ -1,12 +1,14 @@
 //! Rendering.
 
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::Vec3;
 use lightmesh::render::{Choice, MeshFileError, PreparedScene as Prepared};
+use lightmesh::request::files::Files;
+use lightmesh::request::{ImagePlan, Request, StageError, StagedImage};
 use lightmesh::scene::{Geometry, Up};
 use lightmesh::{Device, Observer, RenderError, Renderer as Engine};
-use lightmesh_cli::request::{ChoiceError, Flag, ImageRequest, Staged};
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,17 +18,18 @@ use crate::camera::Camera;
 use crate::convert;
 use crate::environment::Environment;
 use crate::errors::{self, IntoException, OrRaise};
-use crate::flags;
+use crate::film::{Film, Production, Source, SunHours};
 use crate::frame::Frame;
 use crate::light::Light;
 use crate::scene::Scene;
+use crate::settings::{self, IMAGE};
 use crate::watch::{self, Cancel, Watch, Wishes};
 
 /// Renders scenes on one device: "auto", "cpu", "cuda" or "cuda:1". Can be used by several threads at once; the interpreter is free while it
 /// works. Raises `DeviceError` if the device cannot be used.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Renderer {
-    engine: Engine,
+    pub(crate) engine: Engine,
     device: String,
     reason: String,
     /// What was rendered last, so that its structure stays alive.
@@ -40,7 +43,7 @@ pub(crate) struct PreparedScene {
     /// As it was given, with the camera and the surroundings of the settings.
     scene: Scene,
     /// The settings that it was prepared with, which hold for its images, too.
-    flags: Vec<Flag>,
+    request: Request,
     kept: Kept,
 }
 
@@ -56,13 +59,13 @@ struct Kept {
 
 /// What goes wrong on the way to a frame.
 enum Failure {
-    Choice(ChoiceError),
+    Stage(StageError),
     Render(RenderError),
 }
 
-impl From<ChoiceError> for Failure {
-    fn from(error: ChoiceError) -> Failure {
-        Failure::Choice(error)
+impl From<StageError> for Failure {
+    fn from(error: StageError) -> Failure {
+        Failure::Stage(error)
     }
 }
 
@@ -75,7 +78,7 @@ impl From<RenderError> for Failure {
 impl IntoException for Failure {
     fn into_exception(self) -> PyErr {
         match self {
-            Failure::Choice(error) => error.into_exception(),
+            Failure::Stage(error) => error.into_exception(),
             Failure::Render(error) => error.into_exception(),
         }
     }
@@ -104,8 +107,8 @@ impl<'py> FromPyObject<'_, 'py> for Subject<'py> {
 /// A scene with the settings of an image of it.
 struct Order {
     scene: Scene,
-    flags: Vec<Flag>,
-    request: ImageRequest,
+    request: Request,
+    plan: ImagePlan,
     /// Its structure, if there is one.
     kept: Option<Kept>,
 }
@@ -113,28 +116,18 @@ struct Order {
 impl Order {
     /// Takes objects out of the settings, and makes flags of the rest.
     fn new(subject: &Subject<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Order> {
-        let (mut scene, known, kept) = match subject {
-            Subject::Scene(scene) => (scene.try_borrow()?.clone(), Vec::new(), None),
+        let (mut scene, mut request, kept) = match subject {
+            Subject::Scene(scene) => (scene.try_borrow()?.clone(), Request::default(), None),
             Subject::Prepared(prepared) => {
-                let PreparedScene { scene, flags, kept } = prepared.get();
-                (scene.clone(), flags.clone(), Some(kept.clone()))
+                let PreparedScene { scene, request, kept } = prepared.get();
+                (scene.clone(), request.clone(), Some(kept.clone()))
             }
         };
         let settings = settings.map(|settings| settings.copy()).transpose()?;
-        let mut is_seen_from = |settings: &Bound<'_, PyDict>| -> PyResult<()> {
-            if let Some(camera) = taken::<Camera>(settings, "camera")? {
-                scene.set_camera(Some(camera));
-                settings.set_item("camera_name", settings.py().None())?;
-            }
-            if let Some(environment) = taken::<Environment>(settings, "environment")? {
-                scene.set_environment(Some(environment));
-            }
-            Ok(())
-        };
-        settings.as_ref().map_or(Ok(()), &mut is_seen_from)?;
-        let flags = flags::merged(&known, flags::of(settings.as_ref())?);
-        let request = ImageRequest::new(&flags, scene.format).or_raise()?;
-        Ok(Order { scene, flags, request, kept })
+        take_objects(&mut request, settings.as_ref())?(&mut scene);
+        settings::apply(&mut request, settings.as_ref(), IMAGE)?;
+        let plan = ImagePlan::new(&request, scene.format).or_raise()?;
+        Ok(Order { scene, request, plan, kept })
     }
 
     /// The scene with everything that the settings say, how it is exposed, and its structure.
@@ -144,10 +137,10 @@ impl Order {
         last: &Mutex<Option<Kept>>,
         before: Option<&Prepared>,
         watch: &Watch,
-    ) -> Result<(Kept, Staged), Failure> {
+    ) -> Result<(Kept, StagedImage), Failure> {
         let given = &self.scene.world.geometry;
         let mut world = self.scene.world.clone();
-        let staged = self.request.stage(&mut world, watch)?;
+        let staged = self.plan.stage(&mut world, watch)?;
         let ground = staged.ground();
         let last = || last.lock().unwrap_or_else(PoisonError::into_inner);
         let is_same = |kept: &Kept| Arc::ptr_eq(&kept.given, given) && kept.ground == ground;
@@ -156,7 +149,7 @@ impl Order {
             // The ground that was added now is the same.
             world.geometry = Arc::clone(&known.prepared.scene.geometry);
         }
-        let settings = self.request.settings();
+        let settings = self.plan.settings();
         let prepared = match before {
             Some(before) => engine.prepare_moved(before, &world, settings, watch)?,
             None => engine.prepare(&world, settings, watch)?,
@@ -165,6 +158,33 @@ impl Order {
         *last() = Some(kept.clone());
         Ok((kept, staged))
     }
+}
+
+/// Takes camera and surroundings that are objects out of settings. What is returned gives them to a scene.
+pub(crate) fn take_objects(
+    request: &mut Request,
+    settings: Option<&Bound<'_, PyDict>>,
+) -> PyResult<impl Fn(&mut Scene) + Send + Sync + use<>> {
+    let (mut camera, mut environment) = (None, None);
+    if let Some(settings) = settings {
+        camera = taken::<Camera>(settings, "camera")?;
+        environment = taken::<Environment>(settings, "environment")?;
+        if camera.is_some() {
+            settings.set_item("camera_name", settings.py().None())?;
+            (request.camera, request.camera_name) = (None, None);
+        }
+        if environment.is_some() {
+            request.environment = None;
+        }
+    }
+    Ok(move |scene: &mut Scene| {
+        if let Some(camera) = &camera {
+            scene.set_camera(Some(camera.clone()));
+        }
+        if let Some(environment) = &environment {
+            scene.set_environment(Some(environment.clone()));
+        }
+    })
 }
 
 /// An object of this class among settings, which it is taken out of.
@@ -200,7 +220,7 @@ impl PreparedScene {
     fn with_camera(&self, camera: Camera) -> PreparedScene {
         let mut changed = self.clone();
         changed.scene.set_camera(Some(camera));
-        changed.flags.retain(|flag| !matches!(&*flag.name, "camera" | "camera-name"));
+        (changed.request.camera, changed.request.camera_name) = (None, None);
         changed
     }
 
@@ -261,7 +281,7 @@ impl Renderer {
             false => order.prepare(&self.engine, &self.last, before, watch),
         };
         let (kept, _) = watch::run(py, Wishes { progress, cancel }, prepare)?.or_raise()?;
-        Ok(PreparedScene { scene: order.scene, flags: order.flags, kept })
+        Ok(PreparedScene { scene: order.scene, request: order.request, kept })
     }
 
     /// Renders an image. The structure of the scene rendered last is kept: other lights and cameras cost no building.
@@ -276,21 +296,22 @@ impl Renderer {
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Frame> {
         let mut order = Order::new(&scene, settings)?;
-        order.request = order.request.of_picture();
-        let render =
-            |watch: &Watch| {
-                let (kept, staged) = order.prepare(&self.engine, &self.last, None, watch)?;
-                let mut cache = cache.map(MeshCache::lock);
-                let (frame, stops) =
-                    staged.picture(&kept.prepared, order.request.settings(), watch, |prepared, settings| {
-                        match &mut cache {
-                            Some(cache) => self.engine.render_with(cache, prepared, settings, watch),
-                            None => self.engine.render_prepared(prepared, settings, watch),
-                        }
-                    })?;
-                let refused = cache.and_then(|mut cache| cache.refused());
-                Ok((Frame::new(frame, stops, watch.notes(), &kept.prepared.scene), refused))
-            };
+        order.plan = order.plan.of_picture();
+        let render = |watch: &Watch| {
+            let (kept, staged) = order.prepare(&self.engine, &self.last, None, watch)?;
+            let mut cache = cache.map(MeshCache::lock);
+            let (frame, stops) = staged.picture(
+                &kept.prepared,
+                order.plan.settings(),
+                watch,
+                |prepared, settings| match &mut cache {
+                    Some(cache) => self.engine.render_with(cache, prepared, settings, watch),
+                    None => self.engine.render_prepared(prepared, settings, watch),
+                },
+            )?;
+            let refused = cache.and_then(|mut cache| cache.refused());
+            Ok((Frame::new(frame, stops, watch.notes(), &kept.prepared.scene), refused))
+        };
         let rendered = watch::run(py, Wishes { progress, cancel }, render)?;
         let (frame, refused): (Frame, Option<MeshFileError>) =
             rendered.map_err(|error: Failure| error.into_exception())?;
@@ -299,6 +320,38 @@ impl Renderer {
             py.import("warnings")?.call_method1("warn", (refused.to_string(), category))?;
         }
         Ok(frame)
+    }
+
+    /// The frames of a film: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, and `len` says how many are left.
+    /// With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and `mesh_file`, each is written before it is returned; `resume` goes
+    /// on with a film of which some frames are there.
+    #[pyo3(signature = (scene, output = None, *, layers_file = None, stats = None, mesh_file = None, progress = None, cancel = None, **settings))]
+    #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn film(
+        slf: &Bound<'_, Renderer>,
+        scene: Source,
+        output: Option<PathBuf>,
+        layers_file: Option<PathBuf>,
+        stats: Option<PathBuf>,
+        mesh_file: Option<PathBuf>,
+        progress: Option<Py<PyAny>>,
+        cancel: Option<Cancel>,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Film> {
+        let files = Files { output, layers: layers_file, stats, mesh_file, sun_hours: Vec::new() };
+        Film::begin(slf, Production::new(scene, files, settings)?, Wishes { progress, cancel })
+    }
+
+    /// The hours of direct sun on what an image shows, on a day at a place that `sun` says.
+    #[pyo3(signature = (scene, *, progress = None, cancel = None, **settings))]
+    fn sun_hours(
+        slf: &Bound<'_, Renderer>,
+        scene: Source,
+        progress: Option<Py<PyAny>>,
+        cancel: Option<Cancel>,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<SunHours> {
+        SunHours::find(slf, Production::new(scene, Files::default(), settings)?, Wishes { progress, cancel })
     }
 
     /// The visible share of each light, (N, L), at surface points (N, 3) with these normals (N, 3), world coordinates: to bake vertex colours and
@@ -328,7 +381,7 @@ impl Renderer {
             let (kept, _) = order.prepare(&self.engine, &self.last, None, watch)?;
             let world = &kept.prepared.scene;
             let local: Vec<Vec3> = points.iter().map(|&point| world.to_local(point)).collect();
-            let found = self.engine.visibility(&kept.prepared, &local, &normals, order.request.settings(), watch)?;
+            let found = self.engine.visibility(&kept.prepared, &local, &normals, order.plan.settings(), watch)?;
             Ok::<_, Failure>(([found.lights(), found.points()], found.into_shares()))
         };
         let (shape, shares) = watch::run(py, Wishes { progress, cancel }, find)?.or_raise()?;

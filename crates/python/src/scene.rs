@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use lightmesh::Scene as World;
+use lightmesh::request::{format_of, load_options};
 use lightmesh::scene::{self, Instancing, Lights, SceneFormat, Surroundings};
-use lightmesh_cli::request;
 use lightmesh_files::visible;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -15,9 +15,10 @@ use crate::camera::Camera;
 use crate::convert::Color;
 use crate::environment::Environment;
 use crate::errors::{self, OrRaise};
+use crate::frame;
 use crate::geometry::{self, Geometry};
 use crate::light::Light;
-use crate::{flags, frame};
+use crate::settings::{self, OPEN};
 
 /// What built-in scenes are called on the command line.
 const BUILTIN: &str = "builtin:";
@@ -116,11 +117,10 @@ impl Scene {
     #[staticmethod]
     #[pyo3(signature = (path, **settings))]
     fn open(py: Python<'_>, path: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Scene> {
-        let options = request::load_options(&flags::of(settings)?).or_raise()?;
+        let request = settings::of(settings, OPEN)?;
+        let options = load_options(&request, request.smooth.unwrap_or_default().0, request.instances);
         let world = py.detach(|| World::open_with(&path, &options)).or_raise()?;
-        let chosen = settings.and_then(|settings| settings.get_item("scene_format").ok().flatten());
-        let chosen = chosen.and_then(|format| format.extract::<String>().ok()?.parse().ok());
-        let scene = Scene::of(world, chosen.or_else(|| SceneFormat::from_path(&path)));
+        let scene = Scene::of(world, format_of(&path, request.scene_format));
         scene.warn(py)?;
         Ok(scene)
     }
@@ -280,7 +280,7 @@ impl Scene {
 
 impl Scene {
     /// A scene as it was read; its lights are all its own.
-    fn of(world: World, format: Option<SceneFormat>) -> Scene {
+    pub(crate) fn of(world: World, format: Option<SceneFormat>) -> Scene {
         Scene { world, format, makes_lamps: false, lamps: Vec::new() }
     }
 

@@ -9,6 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use lightmesh::request::Host;
 use lightmesh::{Observer, Stage};
 use pyo3::prelude::*;
 
@@ -103,6 +104,11 @@ impl Watch {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Whether the work is to end.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.cancelled()
+    }
+
     /// What was said to people.
     pub(crate) fn notes(&self) -> Vec<String> {
         self.state().notes.clone()
@@ -148,6 +154,8 @@ impl Observer for Watch {
         self.stop.load(Ordering::Relaxed) || self.cancel.as_ref().is_some_and(Cancel::cancelled)
     }
 }
+
+impl Host for Watch {}
 
 /// Tells the caller's thread that the work is over, however it ends.
 struct Ending<'a>(&'a Watch);

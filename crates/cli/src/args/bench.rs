@@ -7,7 +7,9 @@ use lightmesh::Device;
 use lightmesh_bench::{Plan, Suite};
 
 use super::Progress;
-use crate::value::{Budget, Smooth};
+use lightmesh::request::value::Smooth;
+
+use crate::budget::Budget;
 
 /// Run a suite of experiments, or compare two runs
 ///

@@ -1,22 +1,26 @@
 //! The command line as typed: one struct per subcommand. Doc comments are the help text.
 //!
-//! Values are parsed individually (see [`value`](crate::value)); combinations are checked in [`plan`](crate::plan).
+//! Settings of a request are flags of the same names, made from the table of them. Values are checked one by one here, and together in the plan.
 
+#[cfg(feature = "bench")]
 mod bench;
 mod render;
+mod settings;
 mod words;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Arg, Args, CommandFactory, Parser, Subcommand};
-use lightmesh::scene::{Instancing, SceneFormat};
+use lightmesh::request::value::{Bound, ByteSize, Dims, Smooth};
+use lightmesh::scene::Instancing;
 
+#[cfg(feature = "bench")]
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
-pub(crate) use render::{ExposureArgs, FormArgs, ImageArgs, RenderArgs, StorageArgs};
-pub(crate) use words::{Progress, Switch, Up};
+pub(crate) use render::RenderArgs;
+pub(crate) use settings::{Flags, Reading};
+pub(crate) use words::Progress;
 
 use crate::color::When;
-use crate::value::{Bound, ByteSize, Dims, Smooth};
 
 /// Render triangle models with exact soft shadows
 #[derive(Debug, Parser)]
@@ -32,7 +36,8 @@ pub(crate) struct Cli {
 
 /// The version, with the commit if it is known, and what the kernels need.
 fn version() -> String {
-    let commit = lightmesh_bench::commit().map_or_else(String::new, |commit| format!("commit {commit}, "));
+    let commit = option_env!("LIGHTMESH_COMMIT").filter(|commit| !commit.is_empty());
+    let commit = commit.map_or_else(String::new, |commit| format!("commit {commit}, "));
     format!("{} ({commit}kernels for CUDA 12.0 or newer)", env!("CARGO_PKG_VERSION"))
 }
 
@@ -110,8 +115,10 @@ pub(crate) enum Command {
     /// Export a built-in or loaded scene
     Export(ExportArgs),
     /// Run a suite of experiments, or compare two runs
+    #[cfg(feature = "bench")]
     Bench(Box<BenchArgs>),
     /// Write a report on benchmark results, as Markdown and HTML
+    #[cfg(feature = "bench")]
     Report(ReportArgs),
     /// Print the JSON Schema of TOML scene files, for editors and validators
     Schema,
@@ -130,54 +137,20 @@ pub(crate) struct SceneArg {
     pub(crate) scene: PathBuf,
 
     #[command(flatten)]
-    pub(crate) reading: ReadingArgs,
-}
-
-impl SceneArg {
-    /// The format of the scene; `None` if it is built in, or unknown.
-    pub(crate) fn format(&self) -> Option<SceneFormat> {
-        self.reading.format_of(&self.scene)
-    }
-}
-
-impl ReadingArgs {
-    /// The format of a scene: the given one, or by the extension.
-    pub(crate) fn format_of(self, scene: &Path) -> Option<SceneFormat> {
-        self.scene_format.or_else(|| SceneFormat::from_path(scene))
-    }
-}
-
-/// How a scene is read.
-#[derive(Clone, Copy, Debug, Args)]
-pub(crate) struct ReadingArgs {
-    /// Read the scene in this format [default: by the extension]
-    #[arg(long, value_parser = words::scene_format(), help_heading = "Reading")]
-    pub(crate) scene_format: Option<SceneFormat>,
-
-    /// Allow references to files outside the scene's folder
-    #[arg(long, help_heading = "Reading")]
-    pub(crate) allow_outside: bool,
-
-    /// Treat warnings as errors (exit code 2)
-    #[arg(long, help_heading = "Reading")]
-    pub(crate) strict: bool,
-
-    /// Use at most this much memory, as in 512M, on host and device each; if work cannot be split to fit, the exit code
-    /// is 3 [default: free memory minus a reserve]
-    #[arg(long, value_name = "SIZE", help_heading = "Machine")]
-    pub(crate) memory_limit: Option<ByteSize>,
+    pub(crate) reading: Flags<Reading>,
 }
 
 impl Command {
-    /// How it reads its scene; `None` if it has no such flags.
-    pub(crate) fn reading(&self) -> Option<ReadingArgs> {
-        match self {
-            Command::Render(args) => Some(args.scene.reading),
-            Command::Info(args) => Some(args.reading),
-            Command::Grid(args) => Some(args.scene.reading),
-            Command::Export(args) => Some(args.scene.reading),
-            _ => None,
-        }
+    /// The limit of memory, if it has a flag for that.
+    pub(crate) fn memory_limit(&self) -> Option<Option<ByteSize>> {
+        let reading = match self {
+            Command::Render(args) => &args.scene.reading,
+            Command::Info(args) => &args.reading,
+            Command::Grid(args) => &args.scene.reading,
+            Command::Export(args) => &args.scene.reading,
+            _ => return None,
+        };
+        Some(reading.request().memory_limit)
     }
 }
 
@@ -189,7 +162,7 @@ pub(crate) struct InfoArgs {
     pub(crate) scene: Option<PathBuf>,
 
     #[command(flatten)]
-    pub(crate) reading: ReadingArgs,
+    pub(crate) reading: Flags<Reading>,
 
     /// Smooth edges below this crease angle in OBJ, PLY and STL files without normals; off shows facets
     #[arg(long, value_name = "DEGREES|off", allow_negative_numbers = true, default_value_t, help_heading = "Reading")]
@@ -290,6 +263,7 @@ pub(crate) struct ExportArgs {
 ///
 /// Both contain tables, plots, images compared with their references, and the machine, driver, commit and command of
 /// each run. The report shows several files side by side, with ratios to the first file for rows with the same id.
+#[cfg(feature = "bench")]
 #[derive(Debug, Args)]
 pub(crate) struct ReportArgs {
     /// Read results of `lightmesh bench SUITE --json FILE`; the file name names the run

@@ -24,8 +24,8 @@ use std::time::{Duration, Instant};
 use lightmesh::Stage;
 use serde::Serialize;
 
-use super::FrameDone;
 use crate::output;
+use lightmesh::request::FrameDone;
 
 /// Time between two progress events.
 const INTERVAL: Duration = Duration::from_millis(200);

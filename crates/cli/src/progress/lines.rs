@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use lightmesh::Stage;
 use lightmesh::render::Progress;
+use lightmesh::request::RENDERING;
 
 use crate::{memory, output};
 
@@ -66,7 +67,7 @@ impl State {
     /// A line after so much time, while the program does `task`; `None` if nothing is known.
     fn line(&self, elapsed: Duration, task: &str) -> Option<String> {
         let what = match self.progress {
-            Some(progress) if task == memory::RENDERING => self.image(progress),
+            Some(progress) if task == RENDERING => self.image(progress),
             _ if task.is_empty() => return None,
             _ => task.to_owned(),
         };
@@ -93,10 +94,10 @@ mod tests {
         let state = State { stage: Some(Stage::ShortTests), progress };
         let line = |state: State, task| state.line(AFTER, task);
         let wanted = "20 s: image 41%, about 20 s left (short tests)";
-        assert_eq!(line(state, memory::RENDERING).as_deref(), Some(wanted));
+        assert_eq!(line(state, RENDERING).as_deref(), Some(wanted));
         assert_eq!(line(state, "writing the image").as_deref(), Some("20 s: writing the image"));
         assert_eq!(line(State::default(), "reading a.obj").as_deref(), Some("20 s: reading a.obj"));
-        assert_eq!(line(State::default(), memory::RENDERING).as_deref(), Some("20 s: rendering"));
+        assert_eq!(line(State::default(), RENDERING).as_deref(), Some("20 s: rendering"));
         assert_eq!(line(State::default(), ""), None);
     }
 

@@ -10,10 +10,11 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use lightmesh::render::Setting;
+use lightmesh::request::{FrameDone, Host, Words};
 use lightmesh::{Observer, Stage};
 
 use crate::args::Progress;
-use crate::{flags, interrupt, output};
+use crate::{flags, interrupt, memory, output};
 use bar::Bar;
 use json::Json;
 use lines::Lines;
@@ -24,30 +25,6 @@ pub(crate) struct Watcher {
     sink: Sink,
     /// Notes of this command, and what warnings about images are about: each is said once, however many frames it holds for.
     said: Mutex<BTreeSet<String>>,
-}
-
-/// A finished frame of a film.
-pub(crate) struct FrameDone {
-    /// Its number.
-    pub(crate) number: u32,
-    /// The film's last frame.
-    pub(crate) last: u32,
-    /// What it is called besides.
-    pub(crate) when: String,
-    /// Which of the frames of this run it is, from 1 on.
-    pub(crate) index: usize,
-    /// The frames of this run.
-    pub(crate) count: usize,
-    /// Frames that were there and are kept.
-    pub(crate) kept: usize,
-    /// How long it took to render.
-    pub(crate) seconds: f64,
-    /// About how long the others of this run will take.
-    pub(crate) left: Duration,
-    /// Its files.
-    pub(crate) files: Vec<String>,
-    /// Its image, or its movie.
-    pub(crate) picture: String,
 }
 
 enum Sink {
@@ -76,34 +53,9 @@ impl Watcher {
         Watcher { quiet, sink: Sink::Plain, said: Mutex::default() }
     }
 
-    /// A warning.
-    pub(crate) fn warning(&self, text: &str) {
-        self.say("warning", &format!("warning: {text}"), text);
-    }
-
-    /// A warning about an image: the first one about each thing is said, however many frames it holds for.
-    pub(crate) fn warning_about(&self, what: &str, text: &str) {
-        if self.is_new(what) {
-            self.warning(text);
-        }
-    }
-
     /// Whether a text has not been said before.
     fn is_new(&self, text: &str) -> bool {
         self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.to_owned())
-    }
-
-    /// A frame of a film is finished.
-    pub(crate) fn frame(&self, frame: &FrameDone) {
-        let FrameDone { number, last, when, seconds, left, picture, .. } = frame;
-        match &self.sink {
-            Sink::Json(json) if !self.quiet => json.frame(frame),
-            _ => self.say(
-                "frame",
-                &format!("frame {number} of {last}{when}: {seconds:.3} s, {picture}{}", time_left(*left)),
-                "",
-            ),
-        }
     }
 
     /// A summary at the end.
@@ -182,5 +134,46 @@ impl Observer for Watcher {
 
     fn cancelled(&self) -> bool {
         interrupt::requested()
+    }
+}
+
+impl Host for Watcher {
+    fn words(&self) -> Words {
+        Words::Flags
+    }
+
+    fn warning(&self, text: &str) {
+        self.say("warning", &format!("warning: {text}"), text);
+    }
+
+    fn warning_about(&self, what: &'static str, text: &str) {
+        if self.is_new(what) {
+            self.warning(text);
+        }
+    }
+
+    fn frame(&self, frame: &FrameDone) {
+        let FrameDone { number, last, when, seconds, left, picture, .. } = frame;
+        let when = if when.is_empty() { String::new() } else { format!(", {when}") };
+        match &self.sink {
+            Sink::Json(json) if !self.quiet => json.frame(frame),
+            _ => self.say(
+                "frame",
+                &format!("frame {number} of {last}{when}: {seconds:.3} s, {picture}{}", time_left(*left)),
+                "",
+            ),
+        }
+    }
+
+    fn remark(&self, text: String) {
+        interrupt::remark(text);
+    }
+
+    fn in_task(&self, task: &str, work: &mut dyn FnMut()) {
+        memory::during(task, work);
+    }
+
+    fn in_cancellable(&self, work: &mut dyn FnMut()) {
+        interrupt::watched(work);
     }
 }

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use lightmesh::Scene;
+use lightmesh::request::Host;
+use lightmesh::request::files::Destination;
 
-use super::open::open;
+use super::open::open_copied;
 use crate::args::ExportArgs;
-use crate::destination::Destination;
 use crate::failure::Failure;
 use crate::memory;
 use crate::output::{self, Outputs};
-use crate::plan::MeshForm;
 use crate::progress::Watcher;
 
 /// What messages call the export.
@@ -44,7 +44,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
         output::check_writable(path)?;
     }
     let outputs = Outputs::new([("-o", Some(path)), ("the triangles of -o", mesh.as_deref())])?;
-    let scene = open(&args.scene, MeshForm::copied(args.smooth.0), None, &outputs, watcher)?;
+    let scene = open_copied(&args.scene, args.smooth.0, &outputs, watcher)?;
     memory::during(EXPORTING, || scene.export(path))?;
     Ok(scene)
 }
@@ -52,7 +52,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
 /// As one GLB file, the only format that is one.
 fn to_stdout(destination: &Destination, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, Failure> {
     destination.check_binary("-o")?;
-    let scene = open(&args.scene, MeshForm::copied(args.smooth.0), None, &Outputs::default(), watcher)?;
+    let scene = open_copied(&args.scene, args.smooth.0, &Outputs::default(), watcher)?;
     let file = memory::during(EXPORTING, || Ok::<_, Failure>(destination.ready(&scene.to_glb()?)?))?;
     output::publish(vec![file])?;
     Ok(scene)

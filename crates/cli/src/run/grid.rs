@@ -4,15 +4,14 @@ use std::time::Instant;
 
 use lightmesh::render::PreparedGeometry;
 use lightmesh::render::accel::{Grid, GridOptions, Levels};
+use lightmesh::request::BUILDING;
 use lightmesh_memory::Budget;
 
-use super::BUILDING;
-use super::open::open;
+use super::open::open_copied;
 use crate::args::GridArgs;
 use crate::failure::Failure;
 use crate::memory;
 use crate::output::{self, Outputs};
-use crate::plan::MeshForm;
 use crate::progress::Watcher;
 
 pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
@@ -20,11 +19,11 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
     let outputs = Outputs::new([("-o", Some(&*args.output))])?;
     let watcher = Watcher::plain(args.quiet);
     // Normals are no part of the grid.
-    let scene = open(&args.scene, MeshForm::copied(None), None, &outputs, &watcher)?;
+    let scene = open_copied(&args.scene, None, &outputs, &watcher)?;
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };
-    let budget = Budget::new(args.scene.reading.memory_limit.map(|limit| limit.0));
+    let budget = Budget::new(args.scene.reading.request().memory_limit.map(|limit| limit.0));
     let options = GridOptions { dims: args.grid.map(|dims| dims.0), levels, budget };
     let build = || -> Result<Grid, Failure> {
         let triangles = PreparedGeometry::triangles_of(&scene.geometry, budget)?;

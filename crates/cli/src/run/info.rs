@@ -1,6 +1,7 @@
 //! `lightmesh info`.
 
 use lightmesh::render::{DeviceReport, devices};
+use lightmesh::request::{format_of, load_options};
 use lightmesh::scene::{SceneFormat, Up, UpInfo};
 use lightmesh_files::visible;
 use serde::Serialize;
@@ -9,7 +10,6 @@ use super::open::read;
 use crate::args::InfoArgs;
 use crate::failure::Failure;
 use crate::output;
-use crate::plan::MeshForm;
 
 #[derive(Serialize)]
 struct Devices {
@@ -19,10 +19,11 @@ struct Devices {
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let printed = match &args.scene {
         Some(path) => {
-            let form = MeshForm { smooth: args.smooth.0, instancing: args.instances };
-            let scene = read(path, args.reading, form, None)?;
+            let request = args.reading.request();
+            let options = load_options(&request, args.smooth.0, args.instances);
+            let scene = read((path, request.scene_format), &options)?;
             let mut info = scene.info();
-            info.up.get_or_insert_with(|| usual_up(args.reading.format_of(path)));
+            info.up.get_or_insert_with(|| usual_up(format_of(path, request.scene_format)));
             if args.json {
                 output::print_json(&info)
             } else {

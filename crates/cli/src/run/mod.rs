@@ -1,36 +1,25 @@
 //! One file per subcommand.
 
+#[cfg(feature = "bench")]
 mod bench;
+#[cfg(feature = "bench")]
 mod bench_compare;
 mod compare;
 mod completions;
 mod export;
-mod exposure;
-mod film;
 mod grid;
 mod info;
 mod man;
-mod mesh_file;
-mod movie;
 mod open;
-mod range;
 mod render;
+#[cfg(feature = "bench")]
 mod report;
-mod sun;
-mod sun_hours;
 
-pub(crate) use exposure::{Metering, exposure};
 use lightmesh::Scene;
-pub(crate) use movie::MovieError;
-pub(crate) use open::read_options;
-pub(crate) use render::describe;
 
 use crate::args::Command;
 use crate::failure::Failure;
 use crate::output;
-
-/// What messages call the construction of an acceleration structure.
-const BUILDING: &str = "building the acceleration structure";
 
 /// Runs the subcommand; returns the exit code.
 pub(crate) fn run(command: Command) -> Result<u8, Failure> {
@@ -40,7 +29,9 @@ pub(crate) fn run(command: Command) -> Result<u8, Failure> {
         Command::Compare(args) => compare::run(&args),
         Command::Grid(args) => grid::run(&args),
         Command::Export(args) => export::run(&args),
+        #[cfg(feature = "bench")]
         Command::Bench(args) => bench::run(&args),
+        #[cfg(feature = "bench")]
         Command::Report(args) => report::run(&args),
         Command::Schema => output::print(&Scene::file_schema()).map_err(Failure::from),
         Command::Completions(args) => completions::run(&args),

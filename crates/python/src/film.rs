@@ -1,0 +1,185 @@
+//! Films and sun studies.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use lightmesh::request::files::Files;
+use lightmesh::request::sun::SunHours as Hours;
+use lightmesh::request::{Error, Frames, Order, Plan, Request, RequestError, Session};
+use lightmesh::{RenderError, Scene as World};
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::{self, OrRaise};
+use crate::frame::{Frame, plane};
+use crate::renderer::{Renderer, take_objects};
+use crate::scene::Scene;
+use crate::settings::{self, FILM};
+use crate::watch::{self, Cancel, Watch, Wishes};
+
+/// What a film is of: a scene, or the file of one.
+pub(crate) enum Source {
+    File(PathBuf),
+    Scene(Box<Scene>),
+}
+
+impl FromPyObject<'_, '_> for Source {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Source> {
+        if let Ok(scene) = object.cast::<Scene>() {
+            return Ok(Source::Scene(Box::new(scene.try_borrow()?.clone())));
+        }
+        let path = object.extract().map_err(|_| errors::wrong_type("a Scene or the path of one", &object))?;
+        Ok(Source::File(path))
+    }
+}
+
+/// What a film or a study is made of.
+pub(crate) struct Production {
+    source: Source,
+    /// Camera and surroundings that are given as objects.
+    objects: Box<dyn Fn(&mut Scene) + Send + Sync>,
+    order: Order,
+}
+
+impl Production {
+    pub(crate) fn new(source: Source, files: Files, arguments: Option<&Bound<'_, PyDict>>) -> PyResult<Production> {
+        let arguments = arguments.map(|arguments| arguments.copy()).transpose()?;
+        let mut request = Request::default();
+        let objects = take_objects(&mut request, arguments.as_ref())?;
+        settings::apply(&mut request, arguments.as_ref(), FILM)?;
+        let scene = match &source {
+            Source::File(path) => path.clone(),
+            Source::Scene(_) if request.resume => {
+                return Err(errors::setting(
+                    "resume needs the file of a scene, which can be compared with that of the frames that are there; give its path",
+                ));
+            }
+            Source::Scene(scene) => {
+                request.scene_format = scene.format;
+                // There is no file that a manifest could name.
+                PathBuf::from("-")
+            }
+        };
+        Ok(Production { source, objects: Box::new(objects), order: Order { scene, request, files } })
+    }
+
+    /// Opens, stages and prepares the scene.
+    fn session(self, renderer: &Renderer, watch: &Watch) -> Result<Session, Error> {
+        let Production { source, objects, order } = self;
+        let format = order.format();
+        let plan = Plan::new(order)?;
+        let mut scene = match source {
+            Source::File(path) => Scene::of(World::open_with(&path, &plan.load_options())?, format),
+            Source::Scene(scene) => *scene,
+        };
+        plan.files.outputs.keep_scene(&scene.world)?;
+        objects(&mut scene);
+        Session::begin(&renderer.engine, plan, scene.world, 0.0, watch)
+    }
+}
+
+/// The frames of a film: iterate over it. With an output, each frame is written before it is returned.
+#[pyclass(frozen, module = "lightmesh")]
+pub(crate) struct Film {
+    renderer: Py<Renderer>,
+    frames: Mutex<Frames>,
+    progress: Option<Py<PyAny>>,
+    cancel: Option<Cancel>,
+}
+
+impl Film {
+    pub(crate) fn begin(
+        renderer: &Bound<'_, Renderer>,
+        production: Production,
+        Wishes { progress, cancel }: Wishes,
+    ) -> PyResult<Film> {
+        let py = renderer.py();
+        let engine = renderer.get();
+        let wishes =
+            Wishes { progress: progress.as_ref().map(|callback| callback.clone_ref(py)), cancel: cancel.clone() };
+        let begin = |watch: &Watch| {
+            if watch.is_cancelled() {
+                return Err(RenderError::Cancelled.into());
+            }
+            let session = production.session(engine, watch)?;
+            let range = session.plan().range(session.scene())?.ok_or(RequestError::NoFilm)?;
+            session.frames(range, &engine.engine, watch)
+        };
+        let frames = watch::run(py, wishes, begin)?.or_raise()?;
+        Ok(Film { renderer: renderer.clone().unbind(), frames: Mutex::new(frames), progress, cancel })
+    }
+}
+
+#[pymethods]
+impl Film {
+    fn __iter__(slf: Py<Film>) -> Py<Film> {
+        slf
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Frame>> {
+        let progress = self.progress.as_ref().map(|callback| callback.clone_ref(py));
+        let wishes = Wishes { progress, cancel: self.cancel.clone() };
+        let renderer = self.renderer.get();
+        let next = |watch: &Watch| {
+            let mut frames = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
+            let rendered = frames.next(&renderer.engine, watch).transpose()?;
+            Ok::<_, Error>(rendered.map(|rendered| Frame::of_film(rendered, watch.notes())))
+        };
+        watch::run(py, wishes, next)?.or_raise()
+    }
+
+    /// How many frames are left.
+    fn __len__(&self, py: Python<'_>) -> usize {
+        py.detach(|| self.frames.lock().unwrap_or_else(PoisonError::into_inner).left())
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("<lightmesh.Film, {} frames left>", self.__len__(py))
+    }
+}
+
+/// The hours of direct sun on what an image shows.
+#[pyclass(frozen, module = "lightmesh")]
+pub(crate) struct SunHours {
+    found: Hours,
+}
+
+impl SunHours {
+    pub(crate) fn find(renderer: &Bound<'_, Renderer>, production: Production, wishes: Wishes) -> PyResult<SunHours> {
+        let engine = renderer.get();
+        let find = |watch: &Watch| {
+            let found = production.session(engine, watch)?.sun_hours(&engine.engine, watch)?;
+            found.ok_or(Error::Request(RequestError::Missing { setting: "sun" }))
+        };
+        Ok(SunHours { found: watch::run(renderer.py(), wishes, find)?.or_raise()? })
+    }
+}
+
+#[pymethods]
+impl SunHours {
+    /// (H, W): hours of direct sun; 0 where no surface is seen.
+    #[getter]
+    fn hours<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let found = &slf.get().found;
+        plane(slf.as_any(), found.size(), found.hours())
+    }
+
+    /// Hours by object, as the text of a csv file.
+    #[getter]
+    fn table(&self) -> String {
+        self.found.table()
+    }
+
+    /// Writes an exr with the hours, a png with a legend, or a csv with a row for each object. Raises `SaveError`.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| self.found.save(&path)).or_raise()
+    }
+
+    fn __repr__(&self) -> String {
+        let [width, height] = self.found.size();
+        format!("<lightmesh.SunHours, {width}x{height}>")
+    }
+}

@@ -1,0 +1,77 @@
+//! Keyword arguments as settings of a request; `None` stands for a setting that is not given.
+
+use lightmesh::request::Request;
+use lightmesh::request::table::{Group, Value};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
+
+use crate::errors::OrRaise;
+
+/// Settings of reading a scene.
+pub(crate) const OPEN: &[Group] = &[Group::Reading, Group::Form, Group::Memory];
+/// Settings of an image.
+pub(crate) const IMAGE: &[Group] = &[Group::Image, Group::Exposure, Group::Layers, Group::Memory];
+/// Settings of a film.
+pub(crate) const FILM: &[Group] = &[
+    Group::Motion,
+    Group::Frames,
+    Group::Image,
+    Group::Exposure,
+    Group::Storage,
+    Group::Layers,
+    Group::Memory,
+    Group::Reading,
+    Group::Form,
+];
+/// Settings of an image file.
+pub(crate) const SAVE: &[Group] = &[Group::Storage, Group::Exposure];
+
+/// Sets what keyword arguments say, of these groups of settings.
+pub(crate) fn apply(request: &mut Request, arguments: Option<&Bound<'_, PyDict>>, groups: &[Group]) -> PyResult<()> {
+    for (name, argument) in arguments.into_iter().flatten() {
+        if argument.is_none() {
+            continue;
+        }
+        let name = name.extract::<String>()?;
+        let value = value(&argument).map_err(|_| {
+            let kind = argument.get_type().name().map_or_else(|_| "this".to_owned(), |name| name.to_string());
+            PyTypeError::new_err(format!(
+                "{name} cannot be of type {kind}: give a number, a text or a sequence of numbers"
+            ))
+        })?;
+        request.set_in(&name, value, |group| groups.contains(&group)).or_raise()?;
+    }
+    Ok(())
+}
+
+/// A request that says what keyword arguments say.
+pub(crate) fn of(arguments: Option<&Bound<'_, PyDict>>, groups: &[Group]) -> PyResult<Request> {
+    let mut request = Request::default();
+    apply(&mut request, arguments, groups)?;
+    Ok(request)
+}
+
+fn value(argument: &Bound<'_, PyAny>) -> PyResult<Value> {
+    if let Ok(switch) = argument.cast::<PyBool>() {
+        return Ok(Value::Switch(switch.is_true()));
+    }
+    if let Ok(text) = argument.cast::<PyString>() {
+        return Ok(Value::Text(text.to_str()?.to_owned()));
+    }
+    if argument.hasattr("__fspath__")? {
+        return Ok(Value::Text(argument.call_method0("__fspath__")?.extract()?));
+    }
+    let is_whole = argument.is_instance_of::<PyInt>() || argument.hasattr("__index__")?;
+    // Of arrays, only those with one number have an index.
+    if let Some(whole) = is_whole.then(|| argument.call_method0("__index__").ok()).flatten() {
+        let text = whole.str()?.to_string();
+        return Ok(whole.extract().map_or(Value::Text(text), Value::Whole));
+    }
+    let is_list = !argument.is_instance_of::<PyFloat>() && argument.hasattr("__iter__")? && argument.len().is_ok();
+    if is_list {
+        let items = argument.try_iter()?.map(|item| value(&item?)).collect::<PyResult<Vec<Value>>>()?;
+        return Ok(Value::List(items));
+    }
+    argument.extract::<f64>().map(Value::Number)
+}

@@ -1,0 +1,39 @@
+//! The files that are made of a request: which they are, and that none of them replaces another one or an input.
+
+mod destination;
+mod outputs;
+mod picture;
+
+use std::path::{Path, PathBuf};
+
+pub use destination::{Destination, check_one_on_stdout, is_standard};
+pub use outputs::{OutputError, Outputs, input, json, publish, ready};
+pub use picture::PictureFiles;
+pub(crate) use picture::{hours_of_sun, save_options};
+
+use crate::words::Name;
+
+/// The files to write, by the names of the settings that name them. `-` stands for standard output.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Files {
+    /// The image; of a film, a pattern such as `film.####.png`, or a movie.
+    pub output: Option<PathBuf>,
+    /// A multilayer exr with depth, normals, positions, light and ids.
+    pub layers: Option<PathBuf>,
+    /// Counts, timings and resolved settings as JSON.
+    pub stats: Option<PathBuf>,
+    /// Hours of direct sun of a sun study: exr, png or csv.
+    pub sun_hours: Vec<PathBuf>,
+    /// Light points and gathered light, which are read, too.
+    pub mesh_file: Option<PathBuf>,
+}
+
+impl Files {
+    /// The names of the settings that name files.
+    pub const NAMES: [Name; 5] = ["output", "layers", "stats", "sun_hours", "mesh_file"];
+
+    /// The image; an empty path if there is none.
+    pub(crate) fn picture(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new(""))
+    }
+}

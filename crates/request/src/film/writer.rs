@@ -1,0 +1,225 @@
+//! A film is written frame by frame, each as soon as it is finished, while the next one is rendered.
+
+use std::sync::Arc;
+use std::sync::mpsc::{self, SyncSender};
+use std::thread;
+use std::time::Instant;
+
+use super::movie::Movie;
+use super::{Film, FrameRange, FrameRenderer, RenderedFrame, summary};
+use crate::error::{Error, RequestError};
+use crate::expose::Metering;
+use crate::files::PictureFiles;
+use crate::host::FrameDone;
+use crate::manifest::Manifest;
+use crate::plan::Plan;
+use crate::save::save;
+use crate::session::{Context, Session};
+use crate::words::Name;
+
+/// Frames that are rendered and wait to be written, besides the one that is.
+const WAITING: usize = 1;
+
+/// A failure in a frame.
+type InFrame = Box<(u32, Error)>;
+
+/// A frame that is rendered.
+struct Finished {
+    index: usize,
+    rendered: RenderedFrame,
+    files: PictureFiles,
+}
+
+/// Begins a film with files: what is finished is taken out of `range`. Exposure and step hold for all frames.
+pub(crate) fn begin(
+    session: &Session,
+    range: &mut FrameRange,
+    context: Context,
+) -> Result<(FrameRenderer, FrameWriter), Error> {
+    let (plan, host) = (Arc::clone(&session.plan), context.host);
+    let film = plan.film.as_ref().ok_or(RequestError::NoFilm)?;
+    let mut manifest = Manifest::begin(&plan.order, film, &session.prepared.scene, range, host)?;
+    let display = plan.files.options.display;
+    let movie = plan.files.movie.map(|container| Movie::begin(&plan.order, container, display, host)).transpose()?;
+    let begin = Instant::now();
+    let mut renderer = FrameRenderer::new(session, range, context)?;
+    // A request to end leaves time to record what is finished.
+    host.cancellable(|| -> Result<(), Error> {
+        if manifest.chosen().is_none() && !range.numbers.is_empty() {
+            manifest.choose(renderer.chosen_across(context)?);
+        }
+        Ok(())
+    })?;
+    renderer.keep(manifest.chosen().unwrap_or_default());
+    let metering = renderer.metering().clone();
+    let writer = FrameWriter { plan, metering, range: range.clone(), manifest, movie, begin, finished: 0 };
+    Ok((renderer, writer))
+}
+
+/// Renders the frames that are left, and writes their files. Returns what was done.
+pub(crate) fn write(session: &Session, mut range: FrameRange, context: Context) -> Result<String, Error> {
+    let start = Instant::now();
+    let (mut renderer, writer) = begin(session, &mut range, context)?;
+    context.host.cancellable(|| {
+        both(&mut renderer, writer, &range, context)?;
+        if range.numbers.is_empty() { Ok(()) } else { renderer.save_mesh(context.host) }
+    })?;
+    Ok(summary(&range, start.elapsed(), &session.prepared.scene.name, context.load))
+}
+
+/// Renders frames on this thread, and writes them on another one.
+fn both(
+    renderer: &mut FrameRenderer,
+    mut writer: FrameWriter,
+    range: &FrameRange,
+    context: Context,
+) -> Result<(), Error> {
+    let (queue, waiting) = mpsc::sync_channel(WAITING);
+    let (rendered, written, writer) = thread::scope(|scope| {
+        let writing = scope.spawn(move || {
+            let written = waiting.into_iter().try_for_each(|frame| writer.write(frame, context));
+            (written, writer)
+        });
+        let rendered = render_all(renderer, range, context, &queue);
+        drop(queue);
+        let (written, writer) = writing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        (rendered, written, writer)
+    });
+    // What is written was rendered before.
+    match written.and(rendered) {
+        Ok(()) => writer.close(),
+        Err(error) => Err(writer.fail(error.0, error.1)),
+    }
+}
+
+/// Renders all frames, until nobody takes them.
+fn render_all(
+    renderer: &mut FrameRenderer,
+    range: &FrameRange,
+    context: Context,
+    queue: &SyncSender<Finished>,
+) -> Result<(), InFrame> {
+    for (index, &number) in range.numbers.iter().enumerate() {
+        let in_frame = |cause| Box::new((number, cause));
+        let files = files_of(context.plan, number).map_err(in_frame)?;
+        let rendered = renderer.render(number, context).map_err(in_frame)?;
+        if queue.send(Finished { index, rendered, files }).is_err() {
+            break;
+        }
+        FrameRenderer::check_cancelled(context.host).map_err(in_frame)?;
+    }
+    Ok(())
+}
+
+/// The files of a frame.
+fn files_of(plan: &Plan, number: u32) -> Result<PictureFiles, Error> {
+    let film = plan.film.as_ref().ok_or(RequestError::NoFilm)?;
+    Ok(film.files(&plan.order, number)?)
+}
+
+/// Where finished frames go.
+pub(crate) struct FrameWriter {
+    plan: Arc<Plan>,
+    metering: Metering,
+    range: FrameRange,
+    manifest: Manifest,
+    movie: Option<Movie>,
+    begin: Instant,
+    /// Frames that are written.
+    finished: usize,
+}
+
+impl FrameWriter {
+    /// Renders a frame and writes its files, one after the other.
+    pub(crate) fn next(
+        &mut self,
+        number: u32,
+        renderer: &mut FrameRenderer,
+        context: Context,
+    ) -> Result<RenderedFrame, Error> {
+        let files = files_of(&self.plan, number)?;
+        let mut rendered = renderer.render(number, context)?;
+        self.put(self.finished, &mut rendered, &files, context)?;
+        Ok(rendered)
+    }
+
+    /// Writes the files of a frame, and records that they are there.
+    fn write(&mut self, Finished { index, mut rendered, files }: Finished, context: Context) -> Result<(), InFrame> {
+        let number = rendered.number;
+        self.put(index, &mut rendered, &files, context).map_err(|cause| Box::new((number, cause)))
+    }
+
+    fn put(
+        &mut self,
+        index: usize,
+        rendered: &mut RenderedFrame,
+        files: &PictureFiles,
+        context: Context,
+    ) -> Result<(), Error> {
+        let RenderedFrame { number, when, scene, frame, stops } = rendered;
+        save(frame, *stops, files, scene, &self.metering, context)?;
+        if let Some(movie) = &mut self.movie {
+            movie.push(&frame.image, *stops, context.host)?;
+        }
+        self.manifest.finished(*number, files)?;
+        self.finished += 1;
+        self.tell(index, (*number, when), frame.stats.seconds.render, files, context);
+        Ok(())
+    }
+
+    /// Ends the film after its last frame.
+    pub(crate) fn close(mut self) -> Result<(), Error> {
+        self.manifest.close()?;
+        self.movie.take().map_or(Ok(()), Movie::finish)
+    }
+
+    /// Ends the film before its last frame: records which frames are finished.
+    pub(crate) fn stop(mut self) -> Result<(), Error> {
+        Ok(self.manifest.close()?)
+    }
+
+    /// Ends the film with a failure of a frame; returns what is told of it.
+    pub(crate) fn fail(mut self, number: u32, cause: Error) -> Error {
+        // What ended the film is told, not that it cannot be recorded either.
+        let _ = self.manifest.close();
+        // A movie is there as a whole or not at all.
+        let finished = if self.is_movie() { 0 } else { self.finished + self.range.skipped };
+        cause.in_frame(number, self.range.last, finished, self.goes_on())
+    }
+
+    fn is_movie(&self) -> bool {
+        self.plan.film.as_ref().is_some_and(Film::is_movie)
+    }
+
+    /// The setting that goes on with what is there.
+    fn goes_on(&self) -> Name {
+        if self.manifest.is_kept() { "resume" } else { "skip_existing" }
+    }
+
+    fn tell(
+        &self,
+        index: usize,
+        (number, when): (u32, &str),
+        seconds: f64,
+        files: &PictureFiles,
+        Context { host, .. }: Context,
+    ) {
+        let (count, kept, index) = (self.range.numbers.len(), self.range.skipped, index + 1);
+        if !self.is_movie() {
+            let (finished, all, goes_on) = (index + kept, count + kept, host.words().on(self.goes_on()));
+            host.remark(format!("{finished} of {all} frames are finished ({goes_on} goes on)"));
+        }
+        host.frame(&FrameDone {
+            number,
+            last: self.range.last,
+            when: when.to_owned(),
+            index,
+            count,
+            kept,
+            seconds,
+            left: self.begin.elapsed().mul_f64((count - index) as f64 / index as f64),
+            files: files.paths().map(|path| path.display().to_string()).collect(),
+            picture: files.picture.as_ref().map_or_else(String::new, ToString::to_string),
+        });
+    }
+}

@@ -1,0 +1,126 @@
+//! The program around the work: what it shows of it, what it calls it, and how it ends it.
+
+use std::cell::Cell;
+use std::time::Duration;
+
+use lightmesh_render::Observer;
+
+use crate::words::Words;
+
+/// What messages call the construction of an acceleration structure.
+pub const BUILDING: &str = "building the acceleration structure";
+/// What messages call the work on the image itself.
+pub const RENDERING: &str = "rendering";
+
+/// A finished frame of a film.
+#[derive(Clone, Debug)]
+pub struct FrameDone {
+    /// Its number.
+    pub number: u32,
+    /// The film's last frame.
+    pub last: u32,
+    /// What it is called besides.
+    pub when: String,
+    /// Which of the frames of this run it is, from 1 on.
+    pub index: usize,
+    /// The frames of this run.
+    pub count: usize,
+    /// Frames that were there and are kept.
+    pub kept: usize,
+    /// How long it took to render.
+    pub seconds: f64,
+    /// About how long the others of this run will take.
+    pub left: Duration,
+    /// Its files.
+    pub files: Vec<String>,
+    /// Its image, or its movie.
+    pub picture: String,
+}
+
+/// The program around the work. By default it shows nothing.
+pub trait Host: Observer {
+    /// How it names settings.
+    fn words(&self) -> Words {
+        Words::Fields
+    }
+
+    /// Something that may not be as it should be; a sentence for people.
+    fn warning(&self, text: &str) {
+        let _ = text;
+    }
+
+    /// The same about images: the first one about each thing is enough, however many frames it holds for.
+    fn warning_about(&self, what: &'static str, text: &str) {
+        let _ = what;
+        self.warning(text);
+    }
+
+    /// A frame of a film is finished.
+    fn frame(&self, frame: &FrameDone) {
+        let _ = frame;
+    }
+
+    /// What can be said of outputs if the work ends now.
+    fn remark(&self, text: String) {
+        let _ = text;
+    }
+
+    /// Does work that is called `task` where memory runs out: "reading a.obj".
+    fn in_task(&self, task: &str, work: &mut dyn FnMut()) {
+        let _ = task;
+        work();
+    }
+
+    /// Does work that asks whether it is [cancelled](Observer::cancelled), and then ends soon.
+    fn in_cancellable(&self, work: &mut dyn FnMut()) {
+        work();
+    }
+}
+
+impl Host for lightmesh_render::Unobserved {}
+
+/// Does `work` that returns something, by a function that calls work that returns nothing.
+fn with_result<T>(work: impl FnOnce() -> T, call: impl FnOnce(&mut dyn FnMut())) -> T {
+    let (work, result) = (Cell::new(Some(work)), Cell::new(None));
+    call(&mut || {
+        if let Some(work) = work.take() {
+            result.set(Some(work()));
+        }
+    });
+    result.into_inner().expect("a host does the work that it is given")
+}
+
+impl dyn Host + '_ {
+    /// Does `work` that is called `task`.
+    pub fn during<T>(&self, task: &str, work: impl FnOnce() -> T) -> T {
+        with_result(work, |work| self.in_task(task, work))
+    }
+
+    /// Does `work` that ends soon when it is cancelled.
+    pub fn cancellable<T>(&self, work: impl FnOnce() -> T) -> T {
+        with_result(work, |work| self.in_cancellable(work))
+    }
+}
+
+/// A host that says nothing, and ends work when another one does.
+pub(crate) struct Quiet<'a>(pub(crate) &'a dyn Host);
+
+impl Observer for Quiet<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+}
+
+impl Host for Quiet<'_> {
+    fn words(&self) -> Words {
+        self.0.words()
+    }
+
+    fn in_task(&self, task: &str, work: &mut dyn FnMut()) {
+        self.0.in_task(task, work);
+    }
+
+    fn in_cancellable(&self, work: &mut dyn FnMut()) {
+        self.0.in_cancellable(work);
+    }
+}

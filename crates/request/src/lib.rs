@@ -1,0 +1,51 @@
+//! What a picture of a file is: one typed [`Request`] that the command line, Rust programs, Python and Blender all fill in, and the work on it.
+//!
+//! ```text
+//! Request ─▶ Plan ─▶ stage ─▶ prepare ─▶ expose ─▶ picture · film · sun study ─▶ files, manifest
+//! ```
+//!
+//! * [`Request`] has a field for each setting. The [table](FIELDS) of them is what faces are made of: flags, keyword arguments, annotations.
+//! * A [`Plan`] is a request that is checked as far as possible without the scene; [`Order`] names the scene and the files to write.
+//! * A [`Session`] has the scene staged, which means that it has the camera, the lights and the ground that it lacked, and prepared. It renders
+//!   pictures, [films](film) and [sun studies](sun).
+//! * A [`Host`] is the program around: it shows notes and progress, and can end the work.
+//! * Errors name settings; each face [turns](Told) the names into its own [`Words`].
+#![forbid(unsafe_code)]
+
+mod clipping;
+mod error;
+mod expose;
+mod fields;
+pub mod files;
+pub mod film;
+mod host;
+mod image_plan;
+mod manifest;
+mod mesh_file;
+mod open;
+mod plan;
+mod report;
+mod request;
+mod save;
+mod session;
+mod settings;
+mod stage;
+pub mod sun;
+pub mod table;
+mod told;
+pub mod value;
+mod words;
+
+pub use error::{Error, RequestError};
+pub use fields::{field, nearest};
+pub use host::{BUILDING, FrameDone, Host, RENDERING};
+pub use image_plan::{ImagePlan, StagedImage, StoragePlan};
+pub use manifest::ManifestError;
+pub use open::{FilmFrames, Picture, film, picture, sun_hours};
+pub use plan::{Order, Plan, format_of, load_options};
+pub use request::{FIELDS, Request};
+pub use save::describe;
+pub use session::{Frames, Session};
+pub use stage::StageError;
+pub use told::Told;
+pub use words::{Name, Words};

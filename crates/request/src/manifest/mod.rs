@@ -1,0 +1,291 @@
+//! `manifest.json` beside the frames of a film: what they are made of, and which are finished, so that `resume` goes on exactly.
+//!
+//! ```text
+//! {"lightmesh_films": 2, "films": {"film.####.png": {
+//!   "program": "0.1.0", "scene": "9f…", "settings": {"seed": "0", …},
+//!   "chosen": {"exposure": 1.5, "step": 0.02},
+//!   "frames": {"1": [{"file": "film.0001.png", "bytes": 4711, "xxh3": "3a…"}], …}}}}
+//! ```
+//!
+//! 1. A folder has one file for all its films, each under the name of its output. Runs that render parts of one film add to it in turn.
+//! 2. It is written before the first frame and after frames are finished, each time as a whole, and names a frame only if all files of the
+//!    frame are there. A frame that it does not name is rendered again: at worst those that were finished since it was last written.
+//! 3. What is chosen for the film, exposure and step, holds for all frames. It is recorded with the first of them.
+//!
+//! Checksums are of 128 bits, XXH3: they detect damage and edits, not forgery. There is no manifest for a scene on standard input, which
+//! cannot be read again, nor for a movie, which is one file.
+
+mod record;
+mod scene;
+mod settings;
+
+use std::collections::BTreeMap;
+use std::error::Error as Source;
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+use lightmesh_files::{PublishError, Ready, WriteError, directory, publish_record};
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3;
+
+use crate::files::json;
+use crate::plan::Order;
+use crate::told::{Told, display_by_fields};
+use crate::words::{Name, Words};
+pub(crate) use record::Manifest;
+
+/// The name of the file.
+const NAME: &str = "manifest.json";
+/// The form of the file.
+const VERSION: u32 = 2;
+/// Bytes that are read at once for a checksum.
+const PIECE: usize = 1 << 20;
+
+/// Why a film cannot be resumed, or its manifest not be written.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ManifestError {
+    /// A file of this name is something else, or damaged.
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// It cannot be read.
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's message.
+        reason: io::Error,
+    },
+    /// Another version of the program may render other pixels.
+    Program {
+        /// The file.
+        path: PathBuf,
+        /// The film.
+        film: String,
+        /// The recorded version.
+        was: String,
+        /// This version.
+        is: &'static str,
+    },
+    /// A setting is not that of the frames that are there.
+    Settings {
+        /// The file.
+        path: PathBuf,
+        /// The film.
+        film: String,
+        /// The setting.
+        setting: Name,
+        /// The recorded value.
+        was: String,
+        /// The value now.
+        is: String,
+    },
+    /// The scene is not that of the frames that are there.
+    Scene {
+        /// The file.
+        path: PathBuf,
+        /// The film.
+        film: String,
+        /// The scene.
+        scene: PathBuf,
+    },
+    /// There would be no manifest.
+    StandardInput,
+    /// A file that belongs to the film cannot be read.
+    Checksum {
+        /// The file.
+        path: PathBuf,
+        /// The system's message.
+        reason: io::Error,
+    },
+    /// It cannot be written.
+    Write(WriteError),
+    /// It cannot replace the former one.
+    Publish(PublishError),
+}
+
+impl Told for ManifestError {
+    fn told(&self, words: Words) -> String {
+        let anew = || format!("write {} in place of {} to begin anew", words.on("overwrite"), words.on("resume"));
+        match self {
+            ManifestError::Foreign { path, reason } => format!(
+                "{} is not a manifest of films ({reason}); choose another folder for {}, or remove it and {}",
+                path.display(),
+                words.of("output"),
+                anew()
+            ),
+            ManifestError::Read { path, reason } => {
+                format!("cannot read {}: {reason}; check its permissions", path.display())
+            }
+            ManifestError::Program { path, film, was, is } => format!(
+                "{}: the film {film} was begun by version {was} of lightmesh, and this is {is}; use that version, or {}",
+                path.display(),
+                anew()
+            ),
+            ManifestError::Settings { path, film, setting, was, is } => format!(
+                "{}: the settings of the film {film} differ: {} was {was} and is {is}; give the former, or {}",
+                path.display(),
+                words.of(setting),
+                anew()
+            ),
+            ManifestError::Scene { path, film, scene } => format!(
+                "{}: the scene of the film {film} differs: {}, or a file that it refers to, has changed; restore it, or {}",
+                path.display(),
+                scene.display(),
+                anew()
+            ),
+            ManifestError::StandardInput => format!(
+                "{} needs a scene that can be read again, but it comes from standard input; save it to a file and name that",
+                words.of("resume")
+            ),
+            ManifestError::Checksum { path, reason } => {
+                format!("cannot read {} for its checksum: {reason}; check its permissions", path.display())
+            }
+            ManifestError::Write(error) => error.to_string(),
+            ManifestError::Publish(error) => error.to_string(),
+        }
+    }
+}
+
+display_by_fields!(ManifestError);
+
+impl Source for ManifestError {
+    fn source(&self) -> Option<&(dyn Source + 'static)> {
+        match self {
+            ManifestError::Read { reason, .. } | ManifestError::Checksum { reason, .. } => Some(reason),
+            ManifestError::Write(error) => error.source(),
+            ManifestError::Publish(error) => error.source(),
+            _ => None,
+        }
+    }
+}
+
+impl From<WriteError> for ManifestError {
+    fn from(error: WriteError) -> ManifestError {
+        ManifestError::Write(error)
+    }
+}
+
+impl From<PublishError> for ManifestError {
+    fn from(error: PublishError) -> ManifestError {
+        ManifestError::Publish(error)
+    }
+}
+
+/// The content of the file.
+#[derive(Debug, Serialize, Deserialize)]
+struct Folder {
+    lightmesh_films: u32,
+    /// By the name of the output.
+    films: BTreeMap<String, Record>,
+}
+
+/// What is recorded of a film.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Record {
+    /// The version of the program.
+    program: String,
+    /// The checksum of the scene.
+    scene: String,
+    /// By name.
+    settings: BTreeMap<String, String>,
+    /// None before the first frame is finished.
+    chosen: Option<Chosen>,
+    /// The files of finished frames.
+    frames: BTreeMap<u32, Vec<FileRecord>>,
+}
+
+/// What was chosen for all frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Chosen {
+    /// In stops, if it is automatic.
+    pub(crate) exposure: Option<f32>,
+    /// In scene units, if it is automatic and the mode has one.
+    pub(crate) step: Option<f32>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct FileRecord {
+    /// Its name in the folder, or its path.
+    file: String,
+    bytes: u64,
+    xxh3: String,
+}
+
+impl Record {
+    /// Whether frames of both can be in one film.
+    fn is_of_same(&self, other: &Record) -> bool {
+        let same = |a: &Record, b: &Record| (&a.program, &a.scene, &a.settings) == (&b.program, &b.scene, &b.settings);
+        same(self, other) && self.chosen.is_none_or(|chosen| other.chosen.is_none_or(|other| other == chosen))
+    }
+}
+
+/// The manifest of the output's folder, and the name of the film in it.
+fn place(order: &Order) -> (PathBuf, String) {
+    let name = order.files.picture().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    (directory(order.files.picture()).join(NAME), name)
+}
+
+/// What is known of the film that is to be resumed: its program and its settings are those of `order`, its scene is not yet known. `None` if it
+/// was not begun.
+///
+/// # Errors
+/// [`ManifestError`] if the frames would not be those of one film.
+pub(crate) fn known(order: &Order) -> Result<Option<Record>, ManifestError> {
+    if order.is_from_stdin() {
+        return Err(ManifestError::StandardInput);
+    }
+    let (path, film) = place(order);
+    let Some(record) = read(&path)?.and_then(|mut folder| folder.films.remove(&film)) else { return Ok(None) };
+    let is = env!("CARGO_PKG_VERSION");
+    if record.program != is {
+        return Err(ManifestError::Program { path, film, was: record.program, is });
+    }
+    if let Some((setting, was, is)) = settings::difference(&record.settings, &settings::of(&order.request)) {
+        return Err(ManifestError::Settings { path, film, setting, was, is });
+    }
+    Ok(Some(record))
+}
+
+/// `None` if there is none.
+fn read(path: &Path) -> Result<Option<Folder>, ManifestError> {
+    let bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(reason) => return Err(ManifestError::Read { path: path.to_owned(), reason }),
+    };
+    let foreign = |reason| ManifestError::Foreign { path: path.to_owned(), reason };
+    let folder: Folder = serde_json::from_slice(&bytes).map_err(|error| foreign(error.to_string()))?;
+    match folder.lightmesh_films {
+        VERSION => Ok(Some(folder)),
+        other => Err(foreign(format!("its form is {other}, and {VERSION} is known"))),
+    }
+}
+
+fn write(path: &Path, folder: &Folder) -> Result<(), ManifestError> {
+    Ok(publish_record(Ready::with(path, json(folder).as_bytes())?)?)
+}
+
+/// Reads a file to its end; returns its size.
+fn digest(path: &Path, hash: &mut Xxh3) -> Result<u64, ManifestError> {
+    let failed = |reason| ManifestError::Checksum { path: path.to_owned(), reason };
+    let mut file = File::open(path).map_err(failed)?;
+    let (mut piece, mut size) = (vec![0; PIECE], 0);
+    loop {
+        match file.read(&mut piece).map_err(failed)? {
+            0 => return Ok(size),
+            count => {
+                hash.update(&piece[..count]);
+                size += count as u64;
+            }
+        }
+    }
+}
+
+fn hex(hash: &Xxh3) -> String {
+    format!("{:032x}", hash.digest128())
+}

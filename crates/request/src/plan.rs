@@ -1,0 +1,139 @@
+//! From a request to a plan: everything that can be checked before the work begins is checked here.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use lightmesh_files::directory;
+use lightmesh_render::{Acceleration, Lookup, Mode, Settings};
+use lightmesh_scene::{CreaseAngle, Instancing, LoadOptions, SceneFormat};
+
+use crate::error::RequestError;
+use crate::files::{Files, PictureFiles, is_standard};
+use crate::film::Film;
+use crate::request::Request;
+use crate::settings::settings;
+use crate::stage::Staging;
+use crate::sun::SunStudy;
+use crate::value::Smooth;
+
+/// What is asked for: a picture, a film or a study of a scene, and its files.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// The file of the scene, or the name of a built-in one; `-` is standard input.
+    pub scene: PathBuf,
+    /// The request.
+    pub request: Request,
+    /// The files to write.
+    pub files: Files,
+}
+
+impl Order {
+    /// The scene's format; `None` if it is built in, or unknown.
+    pub fn format(&self) -> Option<SceneFormat> {
+        format_of(&self.scene, self.request.scene_format)
+    }
+
+    /// The folder of the scene.
+    pub(crate) fn folder(&self) -> &Path {
+        directory(&self.scene)
+    }
+
+    /// Whether the scene comes from standard input.
+    pub(crate) fn is_from_stdin(&self) -> bool {
+        is_standard(&self.scene)
+    }
+}
+
+/// The format of a scene: the given one, or by the extension.
+pub fn format_of(scene: &Path, given: Option<SceneFormat>) -> Option<SceneFormat> {
+    given.or_else(|| SceneFormat::from_path(scene))
+}
+
+/// How a scene is read.
+pub fn load_options(request: &Request, smooth: Option<CreaseAngle>, instancing: Instancing) -> LoadOptions {
+    LoadOptions::default()
+        .with_format(request.scene_format)
+        .with_allow_outside(request.allow_outside)
+        .with_strict(request.strict)
+        .with_smooth(smooth)
+        .with_instancing(instancing)
+        .with_animation(request.animation.clone())
+        .with_memory_limit(request.memory_limit.map(|limit| limit.0))
+}
+
+/// An order, validated as far as possible without the scene.
+pub struct Plan {
+    /// What is asked for.
+    pub order: Order,
+    /// The crease angle of files without normals, if they are to be smooth.
+    pub smooth: Option<CreaseAngle>,
+    /// Whether meshes in many places are stored once.
+    pub instancing: Instancing,
+    /// What becomes of the scene.
+    pub(crate) staging: Staging,
+    /// Everything else about the image.
+    pub settings: Settings,
+    /// CPU threads; `None`: all.
+    pub threads: Option<NonZeroUsize>,
+    /// The output files; of a film, those of its first frame.
+    pub files: PictureFiles,
+    /// The frames, if it is a film.
+    pub film: Option<Film>,
+    /// The hours of a day, if the sun of one is studied.
+    pub sun: Option<SunStudy>,
+}
+
+impl Plan {
+    /// Checks that settings are consistent and that every output can be written.
+    ///
+    /// # Errors
+    /// [`RequestError`].
+    pub fn new(order: Order) -> Result<Plan, RequestError> {
+        let request = &order.request;
+        request.check()?;
+        let format = order.format();
+        let settings = settings(request, format)?.with_layers(request.layers || order.files.layers.is_some());
+        let sun = SunStudy::new(&order)?;
+        let film = Film::new(&order, sun.as_ref())?;
+        let files = match (&film, &sun) {
+            (Some(film), _) => film.files(&order, film.first())?,
+            (None, Some(sun)) => sun.files(&order)?,
+            (None, None) => PictureFiles::new(&order)?,
+        };
+        let staging = Staging::new(request, format)?.under_sun(sun.as_ref()).of_picture(sun.is_none());
+        Ok(Plan {
+            smooth: request.smooth.unwrap_or_else(|| usual_smooth(&settings)).0,
+            instancing: instancing(request, &settings),
+            staging,
+            threads: request.threads.and_then(|threads| NonZeroUsize::new(threads as usize)),
+            settings,
+            files,
+            film,
+            sun,
+            order,
+        })
+    }
+
+    /// How its scene is read.
+    pub fn load_options(&self) -> LoadOptions {
+        load_options(&self.order.request, self.smooth, self.instancing)
+    }
+}
+
+/// Grids and brute force hold no instances.
+fn instancing(request: &Request, settings: &Settings) -> Instancing {
+    match settings.acceleration {
+        Acceleration::Auto | Acceleration::Bvh => request.instances,
+        _ => Instancing::Never,
+    }
+}
+
+/// The half-ball stands for the thesis, whose surfaces are facets.
+fn usual_smooth(settings: &Settings) -> Smooth {
+    if has_light_points(settings) { Smooth::OFF } else { Smooth::default() }
+}
+
+/// Whether there is a lattice of light points, with its step: of all techniques, only the thesis' has one.
+pub(crate) fn has_light_points(settings: &Settings) -> bool {
+    settings.mode == Mode::LightMesh && settings.resolved_lookup() == Lookup::HalfBall
+}

@@ -1,0 +1,246 @@
+//! The work on a plan: a scene that is opened, staged and prepared, and then rendered as a picture, a film or a sun study.
+
+use std::sync::Arc;
+
+use lightmesh_image::Format;
+use lightmesh_render::{Frame, PreparedScene, RenderError, Renderer, Settings};
+use lightmesh_scene::Scene;
+
+use crate::error::{Error, RequestError};
+use crate::expose::Metering;
+use crate::film::{self, FrameRange, FrameRenderer, FrameWriter, RenderedFrame};
+use crate::host::{BUILDING, Host, RENDERING};
+use crate::mesh_file::Mesh;
+use crate::plan::Plan;
+use crate::save::save;
+use crate::sun::{self, SunHours};
+
+/// What work on a plan needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Context<'a> {
+    pub(crate) renderer: &'a Renderer,
+    pub(crate) plan: &'a Plan,
+    /// Seconds that it took to read the scene.
+    pub(crate) load: f64,
+    pub(crate) host: &'a dyn Host,
+}
+
+/// A scene that is staged and prepared as planned.
+pub struct Session {
+    pub(crate) plan: Arc<Plan>,
+    pub(crate) prepared: PreparedScene,
+    pub(crate) metering: Metering,
+    load: f64,
+}
+
+impl Plan {
+    /// The frames to render, if it is a film: checks that it has those that are wanted, and that nothing is replaced unasked.
+    ///
+    /// # Errors
+    /// [`RequestError`].
+    pub fn range(&self, scene: &Scene) -> Result<Option<FrameRange>, RequestError> {
+        self.film.as_ref().map(|film| film.work(&self.order, scene)).transpose()
+    }
+}
+
+impl Session {
+    /// Stages and prepares a scene, which it took `load` seconds to read.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn begin(
+        renderer: &Renderer,
+        plan: Plan,
+        mut scene: Scene,
+        load: f64,
+        host: &dyn Host,
+    ) -> Result<Session, Error> {
+        if let Some(file) = plan.staging.file() {
+            plan.files.outputs.keep("the environment", Some(file))?;
+        }
+        let staged = plan.staging.apply(&mut scene, host)?;
+        let is_linear = plan.files.format() == Some(Format::Exr);
+        let transparent = plan.settings.transparent;
+        let metering = Metering::of_staged(&mut scene, &staged, plan.files.exposure, is_linear, transparent);
+        let prepared = host.during(BUILDING, || renderer.prepare(&scene, &plan.settings, host))?;
+        film::explain(&scene, plan.film.is_some(), host);
+        Ok(Session { plan: Arc::new(plan), prepared, metering, load })
+    }
+
+    fn context<'a>(&'a self, renderer: &'a Renderer, host: &'a dyn Host) -> Context<'a> {
+        Context { renderer, plan: &self.plan, load: self.load, host }
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The scene as it is rendered.
+    pub fn scene(&self) -> &Scene {
+        &self.prepared.scene
+    }
+
+    /// Writes the hours of direct sun, if they are asked for; returns what was done.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn write_sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<Option<String>, Error> {
+        match &self.plan.sun {
+            Some(study) => sun::write_hours(study, &self.prepared, self.context(renderer, host)),
+            None => Ok(None),
+        }
+    }
+
+    /// Renders the picture; also returns its exposure in stops.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn picture(&self, renderer: &Renderer, host: &dyn Host) -> Result<(Frame, f32), Error> {
+        let render = |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, host);
+        self.context(renderer, host).picture(&self.prepared, &self.plan.settings, &self.metering, render)
+    }
+
+    /// Renders the picture and writes its files.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn write_picture(self, renderer: &Renderer, host: &dyn Host) -> Result<Frame, Error> {
+        let Session { plan, prepared, metering, load } = self;
+        let context = Context { renderer, plan: &plan, load, host };
+        let mut mesh = Mesh::open(&plan, (renderer, &prepared), false, host)?;
+        let has_file = mesh.has_file();
+        let render = |prepared: &PreparedScene, settings: &Settings| match has_file {
+            true => renderer.render_with(&mut mesh.cache, prepared, settings, host),
+            false => renderer.render_prepared(prepared, settings, host),
+        };
+        let (mut frame, stops) = context.picture(&prepared, &plan.settings, &metering, render)?;
+        mesh.check(host);
+        if !host.cancelled() {
+            mesh.save(&prepared, host)?;
+        }
+        let scene = prepared.scene.clone();
+        drop((prepared, mesh)); // frees memory for the encoders
+        save(&mut frame, stops, &plan.files, &scene, &metering, context)?;
+        Ok(frame)
+    }
+
+    /// Renders the frames of a film in `range`, and writes their files; returns what was done.
+    ///
+    /// # Errors
+    /// [`Error`]; frames that are finished stay.
+    pub fn write_film(&self, range: FrameRange, renderer: &Renderer, host: &dyn Host) -> Result<String, Error> {
+        film::write(self, range, self.context(renderer, host))
+    }
+
+    /// The frames of a film in `range`, which are rendered one by one, and written if the plan has files. Exposure and step are chosen for the whole
+    /// film first.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn frames(&self, mut range: FrameRange, renderer: &Renderer, host: &dyn Host) -> Result<Frames, Error> {
+        let context = self.context(renderer, host);
+        let (frames, writer) = if self.plan.order.files.output.is_some() {
+            let (frames, writer) = film::begin(self, &mut range, context)?;
+            (frames, Some(writer))
+        } else {
+            let mut frames = FrameRenderer::new(self, &range, context)?;
+            if !range.numbers.is_empty() {
+                frames.keep(host.cancellable(|| frames.chosen_across(context))?);
+            }
+            (frames, None)
+        };
+        Ok(Frames { plan: Arc::clone(&self.plan), frames, writer, load: self.load, left: range.numbers.into_iter() })
+    }
+
+    /// The hours of direct sun on what the picture shows, if a sun study is asked for.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<Option<SunHours>, Error> {
+        let context = self.context(renderer, host);
+        self.plan.sun.as_ref().map(|study| SunHours::of_study(study, &self.prepared, context)).transpose()
+    }
+}
+
+/// The frames of a film, one by one.
+pub struct Frames {
+    plan: Arc<Plan>,
+    frames: FrameRenderer,
+    /// `None` if frames are not written, or all are.
+    writer: Option<FrameWriter>,
+    load: f64,
+    left: std::vec::IntoIter<u32>,
+}
+
+impl Frames {
+    /// Renders the next frame, and writes it; `None` after the last one. After an error there is none.
+    pub fn next(&mut self, renderer: &Renderer, host: &dyn Host) -> Option<Result<RenderedFrame, Error>> {
+        let context = Context { renderer, plan: &self.plan, load: self.load, host };
+        let Some(number) = self.left.next() else {
+            let closed = self.writer.take()?.close().and_then(|()| self.frames.save_mesh(host));
+            return closed.err().map(Err);
+        };
+        let rendered = host.cancellable(|| match &mut self.writer {
+            Some(writer) => writer.next(number, &mut self.frames, context),
+            None => self.frames.render(number, context),
+        });
+        Some(rendered.map_err(|cause| {
+            self.left = Vec::new().into_iter();
+            match self.writer.take() {
+                Some(writer) => writer.fail(number, cause),
+                None => cause,
+            }
+        }))
+    }
+
+    /// How many frames are left.
+    pub fn left(&self) -> usize {
+        self.left.len()
+    }
+
+    /// What is planned.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+}
+
+/// What is finished stays known when nobody asks for the rest.
+impl Drop for Frames {
+    fn drop(&mut self) {
+        if let Some(writer) = self.writer.take() {
+            // Nobody is there to hear of it; at worst, frames are rendered again.
+            let _ = writer.stop();
+        }
+    }
+}
+
+impl Context<'_> {
+    /// Renders an image by `render`; also returns its exposure in stops.
+    pub(crate) fn picture(
+        self,
+        prepared: &PreparedScene,
+        settings: &Settings,
+        metering: &Metering,
+        mut render: impl FnMut(&PreparedScene, &Settings) -> Result<Frame, RenderError>,
+    ) -> Result<(Frame, f32), Error> {
+        let Context { plan, load, host, .. } = self;
+        let (mut frame, stops) = metering.picture(prepared, settings, host, |prepared, settings| {
+            host.during(RENDERING, || host.cancellable(|| render(prepared, settings)))
+        })?;
+        if plan.settings.partial {
+            host.remark(rows(&frame));
+        } else if host.cancelled() {
+            return Err(RenderError::Cancelled.into());
+        }
+        frame.stats.seconds.load = load;
+        Ok((frame, stops))
+    }
+}
+
+/// How much of an image is finished.
+fn rows(frame: &Frame) -> String {
+    let ([_, height], finished) = (frame.size(), frame.finished_rows());
+    let finished = if finished == height { "all".to_owned() } else { format!("{finished} of") };
+    format!("{finished} {height} rows are finished")
+}

@@ -1,0 +1,192 @@
+//! The hours of direct sun of what each pixel sees.
+//!
+//! ```text
+//! hours(P) = Σ_k t_k V(S_k, P)
+//! ```
+//!
+//! S_k is the sun at moment k, t_k the time for which the moment stands, and V the visible share of the sun's disc from the surface point P in
+//! the middle of the pixel, 0 if the sun is behind the surface. Suns of many moments are the lights of one image: camera rays are cast once
+//! for all of them, and neither sky nor reflected light is computed. Light that passes surfaces, such as panes, is counted as far as V says.
+
+mod colors;
+mod legend;
+mod letters;
+mod picture;
+mod pixel_area;
+mod table;
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::Vec3;
+use lightmesh_image::{Description, ExrOptions, Format, Frame, Layers, Output, Ready, SaveOptions};
+use lightmesh_render::{AmbientSource, Observer, PreparedScene, RenderError, Renderer, Settings};
+use lightmesh_scene::{Camera, Light, LightError, Lights, Up};
+use rayon::prelude::*;
+
+use super::study::hours_file;
+use super::{HoursFile, HoursFormat, SunMoment, SunStudy};
+use crate::error::Error;
+use crate::files::{OutputError, publish, ready};
+use crate::host::RENDERING;
+use crate::session::Context;
+
+/// Bytes that layers of suns may take at a time.
+const BYTES_AT_ONCE: usize = 256 << 20;
+/// Bytes of the layers of a light in a pixel.
+const BYTES: usize = 16;
+/// More suns at a time hardly save anything.
+const MOST_AT_ONCE: usize = 64;
+
+/// The hours of direct sun of the pixels of an image.
+pub struct SunHours {
+    study: SunStudy,
+    exr: ExrOptions,
+    /// What the pixels see.
+    frame: Frame,
+    camera: Camera,
+    /// Hours by pixel; 0 where there is no surface.
+    hours: Vec<f32>,
+}
+
+/// Computes the hours of direct sun and writes their files; returns what was done.
+pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context) -> Result<String, Error> {
+    let Context { renderer, host, .. } = context;
+    let start = Instant::now();
+    let found = SunHours::of_study(study, prepared, context)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let files = host.during("writing the hours of direct sun", || {
+        renderer.install(|| study.outputs.iter().map(|output| found.file(output)).collect::<Result<_, _>>())
+    })?;
+    publish(files)?;
+    let names: Vec<String> = study.outputs.iter().map(|output| output.path.display().to_string()).collect();
+    Ok(format!("hours of direct sun of {} moments: {seconds:.3} s, {}", study.moments.len(), names.join(", ")))
+}
+
+/// The suns of a study, each with the hours that it shines.
+fn suns(study: &SunStudy, up: Up) -> Result<Vec<(Light, f64)>, LightError> {
+    let sun = |moment: &SunMoment| Ok((moment.sun.light(up, study.sky.sky.north)?, moment.hours));
+    study.moments.iter().map(sun).collect()
+}
+
+impl SunHours {
+    /// The hours of the moments of a study, for what an image as planned shows.
+    pub(crate) fn of_study(study: &SunStudy, prepared: &PreparedScene, context: Context) -> Result<SunHours, Error> {
+        let Context { renderer, plan, host, .. } = context;
+        let up = plan.staging.up_of(&prepared.scene.lights);
+        let suns = suns(study, up).expect("the sun has a direction");
+        let found = host.during(RENDERING, || {
+            host.cancellable(|| SunHours::of(renderer, prepared, (&plan.settings, study), &suns, host))
+        })?;
+        Ok(SunHours { exr: plan.files.options.exr, ..found })
+    }
+
+    /// Hours of the pixels, row by row from the top; 0 where there is no surface.
+    pub fn hours(&self) -> &[f32] {
+        &self.hours
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.frame.width(), self.frame.height()]
+    }
+
+    /// The hours for which each of some `suns` shines on what each pixel of an image sees.
+    fn of(
+        renderer: &Renderer,
+        prepared: &PreparedScene,
+        (settings, study): (&Settings, &SunStudy),
+        suns: &[(Light, f64)],
+        observer: &dyn Observer,
+    ) -> Result<SunHours, RenderError> {
+        let mut settings =
+            settings.clone().with_bounces(0).with_ambient_light(AmbientSource::Constant).with_layers(true);
+        (settings.aa, settings.transparent, settings.partial) = (Some(1), false, false);
+        let camera = settings.camera.clone().unwrap_or_else(|| prepared.scene.cameras[0].clone());
+        let [width, height] = settings.crop.map_or(settings.size, |crop| crop.size).map(|side| side as usize);
+        let at_once = (BYTES_AT_ONCE / (BYTES * width * height).max(1)).clamp(1, MOST_AT_ONCE);
+        // Parts of about the same size.
+        let at_once = suns.len().div_ceil(suns.len().div_ceil(at_once).max(1)).max(1);
+        let (mut seen, mut hours) = (None, vec![0.0_f64; width * height]);
+        for suns in suns.chunks(at_once) {
+            let dark = |(light, _): &(Light, f64)| light.clone().with_intensity(Vec3::ZERO);
+            let lights: Lights = suns.iter().map(dark).collect();
+            let lit = prepared.with_lights(lights.with_ambient(Vec3::ZERO));
+            let lightmesh_render::Frame { image: frame, stats } =
+                renderer.render_prepared(&lit, &settings, observer)?;
+            // What was chosen holds for all suns, and is told once.
+            settings.samples = Some(stats.settings.samples.max(1));
+            let Some(layers) = frame.layers() else { continue };
+            for (plane, &(_, time)) in layers.visibility.iter().zip(suns) {
+                let add = |(hours, &share): (&mut f64, &f32)| *hours += time * f64::from(share);
+                hours.par_iter_mut().zip(plane).for_each(add);
+            }
+            seen.get_or_insert_with(|| without_light(frame));
+        }
+        let frame = seen.expect("a study has a moment with sun");
+        let (study, exr) = (study.clone(), ExrOptions::default());
+        Ok(SunHours { study, exr, frame, camera, hours: hours.into_iter().map(|hours| hours as f32).collect() })
+    }
+
+    fn layers(&self) -> &Layers {
+        self.frame.layers().expect("they were kept")
+    }
+
+    /// Whether a pixel sees a surface.
+    fn sees(&self, pixel: usize) -> bool {
+        self.layers().depth[pixel].is_finite()
+    }
+
+    /// The hours as a picture with a legend.
+    pub fn picture(&self) -> Frame {
+        picture::picture(self, &self.study)
+    }
+
+    /// Writes an exr with the hours, a png with a legend, or a csv with a row for each object, by the extension.
+    ///
+    /// # Errors
+    /// [`Error`]; no partial file is left.
+    pub fn save(&self, path: &Path) -> Result<(), Error> {
+        Ok(publish(vec![self.file(&hours_file(path)?)?])?)
+    }
+
+    /// Hours by object, as text with a row for each object that is visible.
+    pub fn table(&self) -> String {
+        table::table(self)
+    }
+
+    /// A complete file that appears when it is published.
+    fn file(&self, output: &HoursFile) -> Result<Ready, Error> {
+        match output.format {
+            HoursFormat::Exr => self.exr(&output.path),
+            HoursFormat::Png => {
+                let options = SaveOptions::default().with_format(Format::Png);
+                Ok(self.picture().ready_with(&output.path, &options)?)
+            }
+            HoursFormat::Csv => Ok(ready(&output.path, self.table().as_bytes())?),
+        }
+    }
+
+    /// Hours, and whether there is a surface as alpha.
+    fn exr(&self, path: &Path) -> Result<Ready, Error> {
+        let seen: Vec<f32> = (0..self.hours.len()).map(|pixel| f32::from(u8::from(self.sees(pixel)))).collect();
+        let description = Description::default().with_software(concat!("Lightmesh ", env!("CARGO_PKG_VERSION")));
+        let options = SaveOptions::default().with_exr(self.exr).with_description(description);
+        let output = Output::to(path).map_err(OutputError::from)?;
+        Ok(self.frame.ready_values_to(output, &[("hours", &self.hours), ("A", &seen)], &options)?)
+    }
+}
+
+/// The frame without what belongs to single lights.
+fn without_light(frame: Frame) -> Frame {
+    let window = frame.window();
+    let parts = frame.into_parts();
+    let [width, height] = parts.size;
+    let kept = |layers: Layers| Layers { visibility: Vec::new(), lights: Vec::new(), rest: Vec::new(), ..layers };
+    let frame = Frame::new(width, height, parts.color).expect("its size is that of a frame");
+    let frame = frame.with_layers(parts.layers.map(kept).unwrap_or_default()).expect("its layers are those of a frame");
+    frame.with_window(window.first, window.whole)
+}
+
+#[cfg(test)]
+mod tests;

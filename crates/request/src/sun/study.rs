@@ -1,0 +1,254 @@
+//! A sun study: the moments of a day at which the sun is above the horizon, its sky at each, and files for the hours of direct sun.
+//!
+//! Each moment stands for the time that is nearer to it than to its neighbours, from the first minute of the study to the last, as far as the
+//! sun is above the horizon then. So the parts of all moments add up to the time of sunshine of an open field. The sun is above the horizon
+//! if the middle of its disc is seen there, with the refraction of an ordinary atmosphere. Sunshine between two moments without sun is not
+//! noticed.
+
+use std::path::{Path, PathBuf};
+
+use lightmesh_files::check_writable;
+use lightmesh_scene::{SkyKind, SunPosition};
+
+use crate::error::RequestError;
+use crate::files::{OutputError, Outputs, PictureFiles, hours_of_sun, input, save_options};
+use crate::plan::Order;
+use crate::value::{SkySpec, SunSpec, clock};
+use crate::words::Words;
+
+/// Halvings of a step in which the sun rises or sets: far below a second.
+const HALVINGS: usize = 30;
+
+/// A sun study.
+#[derive(Clone, Debug)]
+pub struct SunStudy {
+    /// The hours of the day, as typed.
+    pub spec: SunSpec,
+    /// The moments with sun, in their order; at least one.
+    pub moments: Vec<SunMoment>,
+    /// The moments without.
+    pub dark: Vec<u32>,
+    /// The clear sky, but for its sun.
+    pub sky: SkySpec,
+    /// What the hours of direct sun are written to.
+    pub outputs: Vec<HoursFile>,
+}
+
+/// A moment at which the sun is above the horizon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunMoment {
+    /// The minute of the day.
+    pub minute: u32,
+    /// Where the sun stands.
+    pub sun: SunPosition,
+    /// The hours of sunshine that it stands for.
+    pub hours: f64,
+}
+
+/// A file for hours of direct sun.
+#[derive(Clone, Debug)]
+pub struct HoursFile {
+    /// Where it goes.
+    pub path: PathBuf,
+    /// What it holds.
+    pub format: HoursFormat,
+}
+
+/// How hours of direct sun are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HoursFormat {
+    /// The hours of each pixel.
+    Exr,
+    /// The same in colours, with a legend.
+    Png,
+    /// Hours by object.
+    Csv,
+}
+
+impl SunStudy {
+    /// The study that is asked for, if one is. Fails if there is no sun, or a file cannot be written.
+    pub(crate) fn new(order: &Order) -> Result<Option<SunStudy>, RequestError> {
+        let Some(spec) = order.request.sun else { return Ok(None) };
+        let sky = order.request.sky.unwrap_or_else(SkySpec::clear);
+        if !matches!(sky.sky.kind, SkyKind::Clear { .. }) {
+            return Err(RequestError::SunWithoutSky);
+        }
+        let outputs = order.files.sun_hours.iter().map(|path| hours_file(path)).collect::<Result<_, _>>()?;
+        SunStudy::of(spec, sky, outputs).map(Some)
+    }
+
+    /// The study of these hours, if there is sun.
+    pub fn of(spec: SunSpec, sky: SkySpec, outputs: Vec<HoursFile>) -> Result<SunStudy, RequestError> {
+        let (moments, dark) = moments(&spec);
+        if moments.is_empty() {
+            return Err(RequestError::NoSun { spec });
+        }
+        Ok(SunStudy { spec, moments, dark, sky, outputs })
+    }
+
+    /// The sky of moment number `index`: the same as of `--sky` with this place and time.
+    pub fn sky_at(&self, index: usize) -> SkySpec {
+        let mut spec = self.sky;
+        if let SkyKind::Clear { sun, .. } = &mut spec.sky.kind {
+            *sun = self.moments[index].sun;
+        }
+        spec
+    }
+
+    /// The hours of sunshine of an open field.
+    pub fn hours(&self) -> f64 {
+        self.moments.iter().map(|moment| moment.hours).sum()
+    }
+
+    /// Files of a run that writes hours of direct sun and no image.
+    pub(crate) fn files(&self, order: &Order) -> Result<PictureFiles, RequestError> {
+        let outputs = Outputs::new(hours_of_sun(order))?;
+        outputs.keep("the scene", input(&order.scene))?;
+        outputs.keep("grid_file", order.request.grid_file.as_deref())?;
+        let options = save_options(&order.request);
+        Ok(PictureFiles {
+            picture: None,
+            movie: None,
+            options,
+            exposure: order.request.exposure,
+            layers: None,
+            stats: None,
+            outputs,
+        })
+    }
+
+    /// Which moments have no frame, for a note.
+    pub fn left_out(&self, words: Words) -> Option<String> {
+        let (first, last) = (self.dark.first()?, self.dark.last()?);
+        let count = self.dark.len();
+        let moments = if count == 1 { "moment is" } else { "moments are" };
+        Some(format!(
+            "{}: {count} {moments} left out, from {} to {}: the sun is below the horizon then, and twilight is not modelled",
+            words.of("sun"),
+            clock(*first),
+            clock(*last)
+        ))
+    }
+}
+
+/// Checks that a file for hours can be written.
+pub(super) fn hours_file(path: &Path) -> Result<HoursFile, RequestError> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    let format = match extension.to_ascii_lowercase().as_str() {
+        "exr" => HoursFormat::Exr,
+        "png" => HoursFormat::Png,
+        "csv" => HoursFormat::Csv,
+        _ => return Err(RequestError::HoursFormat { path: path.to_owned() }),
+    };
+    check_writable(path).map_err(OutputError::from)?;
+    Ok(HoursFile { path: path.to_owned(), format })
+}
+
+/// The moments with sun, and those without.
+fn moments(spec: &SunSpec) -> (Vec<SunMoment>, Vec<u32>) {
+    let steps: Vec<u32> = (spec.from..=spec.to).step_by(spec.step as usize).collect();
+    let (mut moments, mut dark) = (Vec::new(), Vec::new());
+    for (index, &minute) in steps.iter().enumerate() {
+        let sun = position(spec, f64::from(minute));
+        if !is_up(sun) {
+            dark.push(minute);
+            continue;
+        }
+        let before = index.checked_sub(1).map(|before| steps[before]);
+        let minutes = before.map_or(0.0, |before| share(spec, minute, before))
+            + match steps.get(index + 1) {
+                Some(&after) => share(spec, minute, after),
+                None => sunny(spec, minute, spec.to),
+            };
+        moments.push(SunMoment { minute, sun, hours: minutes / 60.0 });
+    }
+    (moments, dark)
+}
+
+/// The minutes of sunshine towards a neighbour: half of the way, or up to where the sun sets.
+fn share(spec: &SunSpec, minute: u32, neighbour: u32) -> f64 {
+    if is_up(position(spec, f64::from(neighbour))) {
+        return 0.5 * f64::from(minute.abs_diff(neighbour));
+    }
+    sunny(spec, minute, neighbour)
+}
+
+/// The minutes from one with sun to where the sun sets, or rose, on the way to another.
+fn sunny(spec: &SunSpec, minute: u32, other: u32) -> f64 {
+    let (mut up, mut down) = (f64::from(minute), f64::from(other));
+    if is_up(position(spec, down)) {
+        return (down - up).abs();
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (up + down);
+        *(if is_up(position(spec, middle)) { &mut up } else { &mut down }) = middle;
+    }
+    (up - f64::from(minute)).abs()
+}
+
+fn position(spec: &SunSpec, minute: f64) -> SunPosition {
+    let position = SunPosition::of(spec.latitude, spec.longitude, &spec.moment(minute));
+    position.expect("place and date were checked when they were read")
+}
+
+/// As for the sky.
+fn is_up(sun: SunPosition) -> bool {
+    (0.0..=90.0).contains(&sun.elevation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn day(text: &str) -> (Vec<SunMoment>, Vec<u32>) {
+        moments(&text.parse().unwrap())
+    }
+
+    fn hours(text: &str) -> f64 {
+        day(text).0.iter().map(|moment| moment.hours).sum()
+    }
+
+    #[test]
+    fn the_parts_of_moments_add_up_to_the_time_with_sun() {
+        for step in ["15m", "1h", "7m", "45m", "7h", "24h"] {
+            let found = hours(&format!("0,0,2026-03-20Z,07:00-17:00/{step}"));
+            assert!((found - 10.0).abs() < 1e-9, "{step}: {found}");
+        }
+        let (moments, dark) = day("0,0,2026-03-20Z,07:00-17:00/1h");
+        let parts: Vec<f64> = moments.iter().map(|moment| moment.hours).collect();
+        assert_eq!((parts.len(), parts[0], parts[5], parts[10], dark.len()), (11, 0.5, 1.0, 0.5, 0));
+        // A whole day; it begins and ends when the middle of the sun is seen at the horizon, a minute after and before sunrise and sunset.
+        for step in ["1m", "15m", "1h"] {
+            let found = hours(&format!("0,0,2026-03-20Z,00:00-24:00/{step}"));
+            assert!((found - 12.077).abs() < 0.005, "{step}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_published_day_is_found() {
+        // New York, 2015-01-01: sunrise 07:20:02, sunset 16:38:16 by the calculator of NOAA, which the Ruby gem `sun` documents. That is when
+        // the upper limb is seen, the true sun being 0.833 degrees below the horizon. The middle is seen when it is 0.57 degrees below, 1.6
+        // minutes later and earlier at this latitude and season.
+        let found = hours("40.75,-73.99,2015-01-01-05:00,00:00-24:00/15m");
+        let expected = (16.0 + 38.0 / 60.0 + 16.0 / 3600.0) - (7.0 + 20.0 / 60.0 + 2.0 / 3600.0) - 2.0 * 1.6 / 60.0;
+        assert!((found - expected).abs() < 0.015, "{found}, not {expected}");
+    }
+
+    #[test]
+    fn poles_and_the_date_line() {
+        let all_day = "2026-06-21Z,00:00-24:00/1h";
+        assert!((hours(&format!("90,0,{all_day}")) - 24.0).abs() < 1e-9);
+        assert!((hours(&format!("78.2,15.6,{all_day}")) - 24.0).abs() < 1e-9);
+        assert!(day(&format!("-90,0,{all_day}")).0.is_empty() && day(&format!("-78.2,15.6,{all_day}")).0.is_empty());
+        // Both names of the meridian, and both dates of it.
+        let east = day("10,180,2026-06-21+12:00,06:00-20:00/1h");
+        let west = day("10,-180,2026-06-20-12:00,06:00-20:00/1h");
+        assert_eq!((east.0.len(), &east.1), (west.0.len(), &west.1));
+        for (east, west) in east.0.iter().zip(&west.0) {
+            assert!((east.sun.elevation - west.sun.elevation).abs() < 1e-4 && (east.hours - west.hours).abs() < 1e-4);
+        }
+        // In universal time, it is night there at noon.
+        let (moments, dark) = day("10,180,2026-06-21Z,00:00-24:00/1h");
+        assert!(dark.contains(&720) && moments[0].minute == 0 && moments.last().unwrap().minute == 1440);
+    }
+}

@@ -1,0 +1,65 @@
+//! Values of settings: each type is read from text and validated on construction, and shown as it is written.
+//!
+//! All lengths and positions are in world coordinates and scene units, in double precision like scene files.
+
+mod camera;
+mod choices;
+mod frame_rate;
+mod frames;
+mod light;
+mod memory;
+mod number;
+mod size;
+mod sky;
+mod smooth;
+mod sun;
+
+pub use camera::CameraView;
+pub use choices::{Switch, UpChoice};
+pub use frame_rate::FrameRate;
+pub use frames::{Frames, numbered};
+pub use light::{Background, Color, LightSpec};
+pub use memory::ByteSize;
+pub use number::{Bound, Exposure, Positive, number_and_unit};
+pub use size::{Dims, Size};
+pub use sky::{EnvironmentSpec, SkySpec};
+pub use smooth::Smooth;
+pub use sun::{SunSpec, clock};
+
+/// Why a value is invalid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ValueError {
+    /// The text has the wrong form.
+    #[error("write {form}, for instance {example}")]
+    Form {
+        /// The expected form.
+        form: &'static str,
+        /// A valid example.
+        example: &'static str,
+    },
+    /// A part of the text is not a number, or out of range of single precision.
+    #[error("`{text}` is not a valid number: write a decimal number, for instance 0.5")]
+    NotANumber {
+        /// The part.
+        text: String,
+    },
+    /// A number is too large or too small.
+    #[error("{what} must be {range}, but is {text}")]
+    OutOfRange {
+        /// The name of the number.
+        what: &'static str,
+        /// The number.
+        text: String,
+        /// Its valid range.
+        range: &'static str,
+    },
+    /// There is no sun then, or there.
+    #[error("{problem}")]
+    Sun {
+        /// Why.
+        problem: lightmesh_scene::SunError,
+    },
+    /// The camera has no direction.
+    #[error("position and target are the same point: move one of them")]
+    NoDirection,
+}
