@@ -1,4 +1,4 @@
-//! `cargo xtask readme` and `cargo xtask drawings`: generated parts of the documents.
+//! `cargo xtask readme`, `drawings` and `settings`: generated parts of the documents, and of the Python package.
 //!
 //! Programs beside other crates do the work; they are built only for these commands, so that `cargo xtask` itself stays small.
 
@@ -16,6 +16,11 @@ pub(crate) fn readme(root: &Path, check: bool) -> Outcome {
 /// Writes the drawings of docs/method; with `check` only compares them.
 pub(crate) fn drawings(root: &Path, check: bool) -> Outcome {
     run(root, "lightmesh-render-examples", "drawings", &["docs/drawings"], check)
+}
+
+/// Writes annotations and help of Python's keyword arguments from the table of settings; with `check` only compares them.
+pub(crate) fn settings(root: &Path, check: bool) -> Outcome {
+    run(root, "lightmesh-bench-examples", "settings", &["crates/python"], check)
 }
 
 /// Runs a program in the repository's root. If it fails, each line on stderr is a problem.

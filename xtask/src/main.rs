@@ -26,6 +26,7 @@ usage: cargo xtask check-docs          checks that every file that the documents
        cargo xtask map [--check]       writes docs/map.md: each source file with the first sentence of its header
        cargo xtask readme [--check]    writes the tables of docs/results and docs/method from the results they name
        cargo xtask drawings [--check]  writes the drawings of docs/method to docs/drawings
+       cargo xtask settings [--check]  writes types and help of Python's keyword arguments from the table of settings
        cargo xtask fuzz-corpus [DIR]   fills fuzz/corpus with the seeds, the scenes here and the models in DIR
 
 With --check nothing is written: the command fails if a file is out of date. Kernels are checked by digests of their sources; with
@@ -69,6 +70,8 @@ fn main() -> ExitCode {
         ["readme", "--check"] => examples::readme(root, true),
         ["drawings"] => examples::drawings(root, false),
         ["drawings", "--check"] => examples::drawings(root, true),
+        ["settings"] => examples::settings(root, false),
+        ["settings", "--check"] => examples::settings(root, true),
         ["fuzz-corpus"] => corpus::fill(root, None),
         ["fuzz-corpus", scenes] => corpus::fill(root, Some(Path::new(scenes))),
         _ => {

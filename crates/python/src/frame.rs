@@ -221,6 +221,9 @@ impl Frame {
     }
 
     /// Writes a bmp, png, exr or jpg file; the same bytes as the command line. Raises `SaveError`; no partial file is left.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/save.txt")]
     #[pyo3(signature = (path, **settings))]
     fn save(&self, py: Python<'_>, path: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         let options = self.options(settings)?;
@@ -229,6 +232,9 @@ impl Frame {
     }
 
     /// Writes all layers as a multilayer exr file.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/save.txt")]
     #[pyo3(signature = (path, **settings))]
     fn save_layers(&self, py: Python<'_>, path: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         self.layers()?;
@@ -238,6 +244,9 @@ impl Frame {
     }
 
     /// A png file, in memory.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/save.txt")]
     #[pyo3(signature = (**settings))]
     fn to_png<'py>(&self, py: Python<'py>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Bound<'py, PyBytes>> {
         let options = self.options(settings)?;

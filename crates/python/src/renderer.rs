@@ -264,6 +264,9 @@ impl Renderer {
     }
 
     /// Builds the acceleration structure. `before` is the same scene at another moment: what has not moved is kept.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/image.txt")]
     #[pyo3(signature = (scene, *, before = None, progress = None, cancel = None, **settings))]
     fn prepare(
         &self,
@@ -285,6 +288,9 @@ impl Renderer {
     }
 
     /// Renders an image. The structure of the scene rendered last is kept: other lights and cameras cost no building.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/image.txt")]
     #[pyo3(signature = (scene, *, cache = None, progress = None, cancel = None, **settings))]
     fn render(
         &self,
@@ -325,6 +331,9 @@ impl Renderer {
     /// The frames of a film: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, and `len` says how many are left.
     /// With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and `mesh_file`, each is written before it is returned; `resume` goes
     /// on with a film of which some frames are there.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/film.txt")]
     #[pyo3(signature = (scene, output = None, *, layers_file = None, stats = None, mesh_file = None, progress = None, cancel = None, **settings))]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn film(
@@ -343,6 +352,9 @@ impl Renderer {
     }
 
     /// The hours of direct sun on what an image shows, on a day at a place that `sun` says.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/film.txt")]
     #[pyo3(signature = (scene, *, progress = None, cancel = None, **settings))]
     fn sun_hours(
         slf: &Bound<'_, Renderer>,
@@ -356,6 +368,9 @@ impl Renderer {
 
     /// The visible share of each light, (N, L), at surface points (N, 3) with these normals (N, 3), world coordinates: to bake vertex colours and
     /// lightmaps. `lights` stand in for the scene's. What lies behind a surface is dark.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/image.txt")]
     #[pyo3(signature = (points, normals, scene, lights = None, *, progress = None, cancel = None, **settings))]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn visibility<'py>(
@@ -396,6 +411,9 @@ impl Renderer {
 }
 
 /// `Renderer.visibility` on a renderer of its own.
+///
+/// Settings:
+#[doc = include_str!("docs/image.txt")]
 #[pyfunction]
 #[pyo3(signature = (points, normals, scene, lights = None, *, device = "auto", **settings))]
 pub(crate) fn visibility<'py>(

@@ -114,6 +114,9 @@ impl Scene {
     }
 
     /// Reads a .toml, .obj, .gltf, .glb, .ply or .stl file. Raises `SceneError`.
+    ///
+    /// Settings:
+    #[doc = include_str!("docs/open.txt")]
     #[staticmethod]
     #[pyo3(signature = (path, **settings))]
     fn open(py: Python<'_>, path: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Scene> {

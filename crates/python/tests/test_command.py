@@ -13,16 +13,15 @@ import pytest
 
 import lightmesh
 from lightmesh import Scene
-from lightmesh.typing import ImageSettings, OpenSettings, SaveSettings
+from lightmesh.typing import FilmSettings, ImageSettings, OpenSettings, SaveSettings
 
 RENDER = {"size": (96, 64), "seed": 7}
 #: The same on the command line.
 GAZEBO = ("render", "builtin:gazebo", "--device", "cpu", "--size", "96x64", "--seed", "7")
-SETTINGS = (ImageSettings, SaveSettings, OpenSettings)
+SETTINGS = (ImageSettings, SaveSettings, OpenSettings, FilmSettings)
 #: Flags about files, several images, the device or the program itself.
 NOT_OF_A_FRAME = set(
-    "color device fps frames help mesh_file output overwrite progress quiet resume skip_existing stats sun sun_hours threads "
-    "turntable verbose".split()
+    "color device help mesh_file output progress quiet stats sun_hours threads verbose".split()
 )
 
 
@@ -149,7 +148,11 @@ def test_literals_are_what_flags_take(settings):
 @pytest.mark.parametrize("settings", SETTINGS)
 def test_every_keyword_is_taken(renderer, scene, tmp_path, settings):
     """A keyword that the stubs have and the module does not would be a TypeError."""
-    take = {ImageSettings: lambda **flag: renderer.render(scene, **({"size": (8, 6)} | flag)), SaveSettings: renderer.render(scene, size=(8, 6)).save}
+    take = {
+        FilmSettings: lambda **flag: renderer.film(scene, **({"size": (8, 6)} | flag)),
+        ImageSettings: lambda **flag: renderer.render(scene, **({"size": (8, 6)} | flag)),
+        SaveSettings: renderer.render(scene, size=(8, 6)).save,
+    }
     for keyword in settings.__annotations__:
         with contextlib.suppress(lightmesh.LightmeshError):
             if settings is OpenSettings:

@@ -23,8 +23,8 @@ def test_classes():
     ("settings", "error", "text"),
     [
         ({"sizee": (2, 2)}, TypeError, "unexpected keyword argument 'sizee'. Did you mean 'size'?"),
-        ({"size": (0, 5)}, lightmesh.SettingError, "invalid value '0x5'"),
-        ({"quality": "best"}, lightmesh.SettingError, "possible values: draft, good, final"),
+        ({"size": (0, 5)}, lightmesh.SettingError, "size cannot be [0, 5]: write WIDTHxHEIGHT"),
+        ({"quality": "best"}, lightmesh.SettingError, "quality cannot be `best`: choose draft, good or final"),
         ({"samples": -1}, lightmesh.SettingError, "-1 is not in"),
         ({"samples": 1.5}, lightmesh.SettingError, "1.5"),
         ({"size": object()}, TypeError, "size cannot be of type object"),

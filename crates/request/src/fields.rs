@@ -66,14 +66,14 @@ impl Request {
 impl Field {
     /// Sets it in a request.
     fn apply(&self, request: &mut Request, value: &Value) -> Result<(), String> {
-        (self.set)(request, value)?;
-        let number = self.texts(request).first().and_then(|text| text.parse().ok());
-        match (&self.range, number) {
-            (Some(range), Some(number)) if !range.contains(&number) => {
-                Err(format!("{number} is not in {}..={}", range.start(), range.end()))
+        let whole = value.whole();
+        if let (Some(range), Some(whole)) = (&self.range, whole) {
+            let (first, last) = (i64::from(*range.start()), i64::from(*range.end()));
+            if !(first..=last).contains(&whole) {
+                return Err(format!("{whole} is not in {first}..={last}"));
             }
-            _ => Ok(()),
         }
+        (self.set)(request, value)
     }
 
     /// Checks a value that is typed.
@@ -197,7 +197,7 @@ mod tests {
     fn what_cannot_be_set_says_why() {
         let message = |json: &str| read(json).unwrap_err();
         assert_eq!(message(r#"{"qualty": "draft"}"#), "there is no setting qualty; did you mean quality?");
-        assert!(message(r#"{"quality": "fast"}"#).starts_with("quality cannot be fast: choose draft, good or final"));
+        assert!(message(r#"{"quality": "fast"}"#).starts_with("quality cannot be `fast`: choose draft, good or final"));
         assert!(message(r#"{"size": [64]}"#).contains("WIDTHxHEIGHT"));
         assert_eq!(message(r#"{"aa": 0}"#), "aa cannot be 0: 0 is not in 1..=65536");
         assert_eq!(message(r#"{"ground": 1}"#), "ground cannot be 1: it is a switch: give true or false");

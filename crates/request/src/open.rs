@@ -10,10 +10,9 @@ use lightmesh_render::{Choice, Frame, Renderer, Unobserved};
 use lightmesh_scene::Scene;
 
 use crate::error::{Error, RequestError};
-use crate::files::Files;
+use crate::files::{Files, save_options};
 use crate::film::RenderedFrame;
 use crate::host::Host;
-use crate::image_plan::StoragePlan;
 use crate::plan::{Order, Plan};
 use crate::request::Request;
 use crate::save::describe;
@@ -30,7 +29,8 @@ pub struct Picture {
 impl Picture {
     fn new(frame: Frame, stops: f32, scene: &Scene, request: &Request) -> Picture {
         let description = describe(&frame, scene.to_world(Vec3::ZERO), scene.cameras.first());
-        let options = StoragePlan::new(request).options(&frame, stops, description);
+        let mut options = save_options(request).with_description(description);
+        options.display.exposure = stops;
         Picture { frame, stops, options }
     }
 

@@ -144,6 +144,15 @@ pub enum Value {
 }
 
 impl Value {
+    /// Its whole number, if it is one.
+    pub(crate) fn whole(&self) -> Option<i64> {
+        match self {
+            Value::Whole(whole) => Some(*whole),
+            Value::Text(text) => text.parse().ok(),
+            _ => None,
+        }
+    }
+
     /// As it is typed, with the items of a list joined by `separator`.
     fn text(&self, separator: &str) -> String {
         match self {

@@ -144,7 +144,7 @@ fn parser(field: &'static Field) -> ValueParser {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::command;
+    use crate::args::{Cli, command};
 
     #[test]
     fn every_setting_has_a_flag() {
@@ -162,14 +162,23 @@ mod tests {
 
     #[test]
     fn flags_make_a_request() {
-        let line = ["render", "a.toml", "--size", "64x48", "--light", "1,2,3", "--light", "4,5,6;2", "--ground"];
-        let command = Flags::<Others>::augment_args(Command::new("render").arg(Arg::new("scene")));
-        let matches = command.try_get_matches_from(line).unwrap();
-        let request = Flags::<Others>::from_arg_matches(&matches).unwrap().request();
-        assert_eq!((request.size.0, request.light.len(), request.ground), ([64, 48], 2, true));
-        assert_eq!(
-            Request { ground: false, light: Vec::new(), size: Default::default(), ..request },
-            Request::default()
-        );
+        let line = [
+            "lightmesh",
+            "render",
+            "a.toml",
+            "-o",
+            "a.png",
+            "--size",
+            "64x48",
+            "--light",
+            "1,2,3",
+            "--light",
+            "4,5,6;2",
+        ];
+        let cli = Cli::from_arg_matches(&command().try_get_matches_from(line).unwrap()).unwrap();
+        let crate::args::Command::Render(args) = cli.command else { panic!("not a render") };
+        let request = args.order().request;
+        assert_eq!((request.size.0, request.light.len()), ([64, 48], 2));
+        assert_eq!(Request { light: Vec::new(), size: Default::default(), ..request }, Request::default());
     }
 }

@@ -6,6 +6,7 @@ mod color;
 mod compare;
 mod devices;
 mod display;
+mod faces;
 mod film;
 mod help;
 mod memory;

@@ -132,7 +132,7 @@ fn another_scene_and_other_settings_are_refused() {
     let seed = refused(&["--resume", "--seed", "3"]);
     assert!(seed.contains("manifest.json: the settings of the film f.##.png differ: --seed was 0 and is 3;"), "{seed}");
     assert!(seed.ends_with("or write --overwrite in place of --resume to begin anew"), "{seed}");
-    assert!(refused(&["--resume", "--camera-name", "top"]).contains("--camera-name was not given and is \"top\""));
+    assert!(refused(&["--resume", "--camera-name", "top"]).contains("--camera-name was not given and is top;"));
     // The machine and messages do not matter.
     place.good(&film(&["--resume", "--threads", "1", "--accel", "bvh", "--progress", "none", "--frames", "3"]));
 

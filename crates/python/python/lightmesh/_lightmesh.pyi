@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, Unpack
 
-from .typing import Color, Falloff, ImageSettings, Instances, OpenSettings, Path, ProgressCallback, SaveSettings, Vector, WrapMode
+from .typing import Color, Falloff, FilmSettings, ImageSettings, Instances, OpenSettings, Path, ProgressCallback, SaveSettings, Vector, WrapMode
 
 __all__ = [
     "Camera",
     "Cancel",
     "Environment",
+    "Film",
     "Frame",
     "Geometry",
     "Light",
@@ -23,6 +24,7 @@ __all__ = [
     "Progress",
     "Renderer",
     "Scene",
+    "SunHours",
     "Texture",
     "__version__",
     "command",
@@ -492,6 +494,12 @@ class Frame:
     def exposure(self) -> float:
         """Stops that image files are shown at, unless `save` says otherwise."""
     @property
+    def number(self) -> int | None:
+        """Its number in a film; `None` for a picture."""
+    @property
+    def when(self) -> str:
+        """The time of day in a film of a sun study, as in "06:15"; else empty."""
+    @property
     def finished_rows(self) -> int:
         """All, unless the render was stopped with `partial=True`."""
     @property
@@ -505,6 +513,28 @@ class Frame:
         """A png file, in memory."""
     def _repr_png_(self) -> bytes: ...
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[np.float32]: ...
+
+@final
+class Film:
+    """The frames of a film: iterate over it. With an output, each frame is written before it is returned."""
+
+    def __iter__(self) -> Self: ...
+    def __next__(self) -> Frame: ...
+    def __len__(self) -> int:
+        """How many frames are left."""
+
+@final
+class SunHours:
+    """The hours of direct sun on what an image shows."""
+
+    @property
+    def hours(self) -> NDArray[np.float32]:
+        """(H, W): hours of direct sun; 0 where no surface is seen."""
+    @property
+    def table(self) -> str:
+        """Hours by object, as the text of a csv file."""
+    def save(self, path: Path) -> None:
+        """Writes an exr with the hours, a png with a legend, or a csv with a row for each object. Raises `SaveError`."""
 
 @final
 class Renderer:
@@ -538,6 +568,30 @@ class Renderer:
         **settings: Unpack[ImageSettings],
     ) -> Frame:
         """Renders an image. The structure of the scene rendered last is kept: other lights and cameras cost no building."""
+    def film(
+        self,
+        scene: Scene | Path,
+        output: Path | None = None,
+        *,
+        layers_file: Path | None = None,
+        stats: Path | None = None,
+        mesh_file: Path | None = None,
+        progress: ProgressCallback | None = None,
+        cancel: Cancel | None = None,
+        **settings: Unpack[FilmSettings],
+    ) -> Film:
+        """The frames of a film: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one; `len` says how many are left.
+        With `output`, as in "film.####.png" or "film.mp4", each frame is written before it is returned, and `resume` goes on with a film of which
+        some frames are there. `layers_file`, `stats` and `mesh_file` are written beside it. Raises `SettingError`, `SceneError`, `SaveError`."""
+    def sun_hours(
+        self,
+        scene: Scene | Path,
+        *,
+        progress: ProgressCallback | None = None,
+        cancel: Cancel | None = None,
+        **settings: Unpack[FilmSettings],
+    ) -> SunHours:
+        """The hours of direct sun on what an image shows, on the day and at the place of `sun`."""
     def visibility(
         self,
         points: ArrayLike,

@@ -115,7 +115,7 @@ impl FrameRenderer {
         }
         let (mut exposures, mut steps) = (Vec::new(), Vec::new());
         let quiet = Quiet(host);
-        let context = Context { host: &quiet, ..context };
+        let quietly = Context { host: &quiet, ..context };
         let mut numbers: Vec<u32> = (0..SAMPLES)
             .map(|sample| 1 + (u64::from(self.last - 1) * u64::from(sample) / u64::from(SAMPLES - 1)) as u32)
             .collect();
@@ -125,7 +125,7 @@ impl FrameRenderer {
             let render =
                 |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, &quiet);
             if self.metering.is_automatic() {
-                let (_, stops) = context.picture(&prepared, &reduced(settings), &self.metering, render)?;
+                let (_, stops) = quietly.picture(&prepared, &reduced(settings), &self.metering, render)?;
                 exposures.push(stops);
             }
             if asks_step {

@@ -1,0 +1,99 @@
+"""Films and sun studies: the frames that the command line writes, one by one."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import lightmesh
+import lightmesh.typing
+
+SETTINGS = {"size": (48, 36), "quality": "draft"}
+FLAGS = ("--device", "cpu", "--size", "48x36", "--quality", "draft", "--quiet")
+DAY = "54.98,82.9,2026-06-21+07:00,09:00-15:00/3h"
+
+
+def command(folder, *arguments):
+    subprocess.run([sys.executable, "-m", "lightmesh", "render", "builtin:gazebo", *FLAGS, *arguments], cwd=folder, check=True, timeout=300)
+
+
+@pytest.mark.parametrize(("flags", "settings"), [(("--turntable", "3"), {"turntable": 3}), (("--sun", DAY), {"sun": DAY})], ids=["turntable", "sun"])
+def test_frames_are_those_of_the_command_line(renderer, tmp_path, flags, settings):
+    command(tmp_path, *flags, "-o", "a.#.png")
+    film = renderer.film("builtin:gazebo", **SETTINGS, **settings)
+    assert len(film) == 3
+    frames = list(film)
+    assert [frame.number for frame in frames] == [1, 2, 3] and len(film) == 0
+    assert [frame.when for frame in frames] == (["09:00", "12:00", "15:00"] if "sun" in settings else [""] * 3)
+    for frame in frames:
+        frame.save(tmp_path / "b.png")
+        assert (tmp_path / "b.png").read_bytes() == (tmp_path / f"a.{frame.number}.png").read_bytes()
+
+
+def test_files_are_written_and_a_film_goes_on(renderer, tmp_path):
+    output = tmp_path / "f.##.png"
+    film = renderer.film("builtin:gazebo", output, turntable=4, resume=True, **SETTINGS)
+    assert next(film).number == 1 and (tmp_path / "f.01.png").exists() and not (tmp_path / "f.02.png").exists()
+    del film
+    assert [frame.number for frame in renderer.film("builtin:gazebo", output, turntable=4, resume=True, **SETTINGS)] == [2, 3, 4]
+    command(tmp_path, "--turntable", "4", "-o", "f.##.png", "--resume")
+    with pytest.raises(lightmesh.SettingError, match="seed was 0 and is 5.*overwrite=True"):
+        renderer.film("builtin:gazebo", output, turntable=4, resume=True, seed=5, **SETTINGS)
+    with pytest.raises(lightmesh.SettingError, match="exists and 3 more; add skip_existing=True"):
+        renderer.film("builtin:gazebo", output, turntable=4, **SETTINGS)
+
+
+def test_a_scene_of_arrays(renderer, scene, tmp_path):
+    rgb = [frame.rgb.mean() for frame in renderer.film(scene, turntable=2, size=(32, 24))]
+    assert len(rgb) == 2 and rgb[0] != rgb[1]
+    with pytest.raises(lightmesh.SettingError, match="resume needs the file of a scene"):
+        renderer.film(scene, tmp_path / "f.#.png", turntable=2, resume=True)
+
+
+def test_what_is_no_film(renderer, scene):
+    with pytest.raises(lightmesh.SettingError, match="turntable"):
+        renderer.film(scene, size=(32, 24))
+    with pytest.raises(TypeError, match="unexpected keyword argument 'turntabel'. Did you mean 'turntable'?"):
+        renderer.film(scene, turntabel=3)
+    with pytest.raises(lightmesh.SettingError, match="turntable cannot be 0: 0 is not in 1..=1000000"):
+        renderer.film(scene, turntable=0)
+    with pytest.raises(lightmesh.SettingError, match="sun is needed"):
+        renderer.sun_hours(scene, size=(32, 24))
+
+
+def test_cancelled(renderer, scene):
+    cancel = lightmesh.Cancel()
+    film = renderer.film(scene, turntable=3, size=(32, 24), cancel=cancel)
+    next(film)
+    cancel.cancel()
+    with pytest.raises(lightmesh.Cancelled):
+        next(film)
+    assert list(film) == []
+
+
+def test_progress(renderer, scene):
+    seen = []
+    for _ in renderer.film(scene, turntable=2, size=(64, 48), progress=lambda progress: seen.append(progress.done)):
+        pass
+    assert seen and all(0.0 <= done <= 1.0 for done in seen)
+
+
+def test_hours_of_direct_sun(renderer, tmp_path):
+    command(tmp_path, "--sun", DAY, "--sun-hours", "a.exr", "--sun-hours", "a.png", "--sun-hours", "a.csv")
+    found = renderer.sun_hours("builtin:gazebo", sun=DAY, **SETTINGS)
+    assert found.hours.shape == (36, 48) and found.hours.dtype == np.float32 and 0 < found.hours.max() < 6.01
+    for extension in ("exr", "png", "csv"):
+        found.save(tmp_path / f"b.{extension}")
+        assert (tmp_path / f"a.{extension}").read_bytes() == (tmp_path / f"b.{extension}").read_bytes()
+    assert found.table.startswith("object,pixels,")
+    with pytest.raises(lightmesh.SettingError, match="unknown format"):
+        found.save(tmp_path / "b.txt")
+
+
+@pytest.mark.parametrize("function", ["film", "sun_hours", "render", "prepare", "visibility"])
+def test_help_has_every_keyword(function):
+    types = {"film": lightmesh.typing.FilmSettings, "sun_hours": lightmesh.typing.FilmSettings}.get(function, lightmesh.typing.ImageSettings)
+    text = getattr(lightmesh.Renderer, function).__doc__
+    for keyword in types.__annotations__:
+        assert f"\n{keyword}: " in text, keyword
