@@ -51,6 +51,10 @@ readme:
 drawings:
     cargo xtask drawings
 
+# Generate types and help of Python's keyword arguments from the table of settings
+settings:
+    cargo xtask settings
+
 # The Python package in an environment of its own, target/python
 _python:
     python3 -m venv target/python
