@@ -36,7 +36,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PACKAGES = ["memory", "files", "scene-tests", "image", "layout", "render-tests", "emulator", "lightmesh", "cli"]
+PACKAGES = ["memory", "files", "scene-tests", "image", "layout", "render-tests", "emulator", "lightmesh", "request", "cli"]
 """Packages whose tests are run, if not told otherwise: those that make images."""
 VARIABLE = "LIGHTMESH_MUTANT"
 FAILED = re.compile(r"^test (.+?)(?: - should panic)? \.\.\. FAILED")

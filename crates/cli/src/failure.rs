@@ -25,7 +25,7 @@ pub(crate) const INTERRUPTED: u8 = 130;
 pub(crate) enum Failure {
     /// The work on a request.
     #[error("{}", .0.told(Words::Flags))]
-    Request(Error),
+    Request(Box<Error>),
     #[error(transparent)]
     Grid(#[from] GridError),
     #[error(transparent)]
@@ -79,7 +79,7 @@ macro_rules! of_request {
     ($($error:ty),*) => {
         $(impl From<$error> for Failure {
             fn from(error: $error) -> Failure {
-                Failure::Request(error.into())
+                Failure::Request(Box::new(error.into()))
             }
         })*
     };
