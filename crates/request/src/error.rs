@@ -62,7 +62,7 @@ pub enum RequestError {
     /// The camera cannot be used.
     Camera(CameraError),
     /// A film cannot be resumed.
-    Manifest(ManifestError),
+    Manifest(Box<ManifestError>),
     /// A film cannot become a movie.
     Movie(MovieChoiceError),
     /// The part of the image is not in it.
@@ -270,7 +270,7 @@ pub enum Error {
     /// A movie cannot be encoded.
     Movie(MovieError),
     /// A film's manifest cannot be written.
-    Manifest(ManifestError),
+    Manifest(Box<ManifestError>),
     /// A file of light points and gathered light cannot be read.
     Mesh(MeshFileError),
     /// A file of light points and gathered light cannot be written.
@@ -382,9 +382,21 @@ macro_rules! from {
 }
 
 from! {
-    RequestError: Save(SaveError), Output(OutputError), Camera(CameraError), Manifest(ManifestError), Movie(MovieChoiceError);
+    RequestError: Save(SaveError), Output(OutputError), Camera(CameraError), Movie(MovieChoiceError);
     Error: Request(RequestError), Load(LoadError), Stage(StageError), Render(RenderError), Save(SaveError), Output(OutputError),
-        Movie(MovieError), Manifest(ManifestError), Mesh(MeshFileError), MeshSave(MeshSaveError);
+        Movie(MovieError), Mesh(MeshFileError), MeshSave(MeshSaveError);
+}
+
+impl From<ManifestError> for RequestError {
+    fn from(error: ManifestError) -> RequestError {
+        RequestError::Manifest(Box::new(error))
+    }
+}
+
+impl From<ManifestError> for Error {
+    fn from(error: ManifestError) -> Error {
+        Error::Manifest(Box::new(error))
+    }
 }
 
 #[cfg(test)]
