@@ -150,7 +150,7 @@ impl IntoException for Error {
     fn into_exception(self) -> PyErr {
         match self {
             Error::Request(error) => error.into_exception(),
-            Error::Load(error) => error.into_exception(),
+            Error::Load(error) => (*error).into_exception(),
             Error::Stage(error) => error.into_exception(),
             Error::Render(error) => error.into_exception(),
             Error::Save(error) => error.into_exception(),

@@ -258,7 +258,7 @@ pub enum Error {
     /// The request cannot be met.
     Request(RequestError),
     /// The scene cannot be read.
-    Load(LoadError),
+    Load(Box<LoadError>),
     /// The scene cannot be lit or seen as requested.
     Stage(StageError),
     /// The image cannot be rendered.
@@ -383,13 +383,19 @@ macro_rules! from {
 
 from! {
     RequestError: Save(SaveError), Output(OutputError), Camera(CameraError), Movie(MovieChoiceError);
-    Error: Request(RequestError), Load(LoadError), Stage(StageError), Render(RenderError), Save(SaveError), Output(OutputError),
+    Error: Request(RequestError), Stage(StageError), Render(RenderError), Save(SaveError), Output(OutputError),
         Movie(MovieError), Mesh(MeshFileError), MeshSave(MeshSaveError);
 }
 
 impl From<ManifestError> for RequestError {
     fn from(error: ManifestError) -> RequestError {
         RequestError::Manifest(Box::new(error))
+    }
+}
+
+impl From<LoadError> for Error {
+    fn from(error: LoadError) -> Error {
+        Error::Load(Box::new(error))
     }
 }
 
