@@ -9,6 +9,8 @@ seed and kept as a folder: `--seed N --runs 1` repeats it.
 """
 
 import argparse
+import functools
+import os
 import random
 import re
 import shutil
@@ -53,7 +55,7 @@ def run(program, folder, dice):
     """What is wrong with one run, its exit code, and its command."""
     scene = write_scene(folder, dice)
     outputs = {}
-    command = [str(program), *arguments(scene, outputs, folder, dice)]
+    command = [str(program), *arguments(scene, outputs, folder, dice, words_of_flags(program))]
     inputs = {path: path.read_bytes() for path in folder.iterdir() if path.is_file()}
     for path in outputs:
         if path not in inputs and dice.random() < 0.3:
@@ -107,7 +109,16 @@ def problems(code, kill, out, err, inputs, outputs, folder):
 # ---- Commands ----
 
 
-def arguments(scene, outputs, folder, dice):
+@functools.cache
+def words_of_flags(program):
+    """The words that flags of `render` can be chosen from, by its help."""
+    environment = os.environ | {"COLUMNS": "1000"}
+    text = subprocess.run([program, "render", "-h"], env=environment, capture_output=True, text=True, check=True).stdout
+    found = re.findall(r"^ +(?:-\w, )?(--[a-z-]+) .*\[possible values: ([^\]]*)\]", " ".join(text.split()).replace(" --", "\n --"), re.MULTILINE)
+    return {flag: words.split(", ") for flag, words in found}
+
+
+def arguments(scene, outputs, folder, dice, listed):
     """A command line; its outputs, with a test of each for being complete, are added to `outputs`."""
     some = lambda chance: dice.random() < chance
     subcommand = dice.choices(["render", "info", "export", "grid"], [8, 2, 1, 1])[0]
@@ -135,8 +146,9 @@ def arguments(scene, outputs, folder, dice):
     # Those that are accepted, and those that may be refused.
     choices = {
         "--size": (["64x48", "200x150", "640x480"], ["1x1", "0x5", "3x", "70000x70000", "1x65535"]),
-        "--mode": (["ray-trace", "area", "light-mesh"], ["x"]),
-        "--lookup": (["lists", "half-ball", "adaptive"], [""]),
+        # Techniques are those that the program lists.
+        "--mode": (listed["--mode"], ["x"]),
+        "--lookup": (listed["--lookup"], [""]),
         "--quality": (["draft", "good", "final"], ["GOOD"]),
         "--samples": (["1", "4", "17", "256"], ["0", "-1", "99999999"]),
         "--step": (["auto", "0.5"], ["0", "nan", "1e-30", "1e30"]),

@@ -3,24 +3,8 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
-QUALITIES = [
-    ("DRAFT", "Draft", "16 samples of each light in a pixel, and 4 of each pixel"),
-    ("GOOD", "Good", "64 samples of each light in a pixel, and 8 of each pixel"),
-    ("FINAL", "Final", "256 samples of each light in a pixel, and 16 of each pixel"),
-]
-MODES = [
-    ("LISTS", "Occluder Lists", "Exact soft shadows: what can hide a light is looked up once for neighbouring pixels"),
-    ("ADAPTIVE", "Adaptive Rays", "One shadow ray for each light, and all samples where neighbouring pixels disagree"),
-    ("HALF_BALL", "Half-Ball", "Shadows interpolated from light points: the thesis' method"),
-    ("RAY_TRACE", "Hard Shadows", "One shadow ray for each light"),
-    ("AREA", "Area Shadows", "Shadow rays to samples of each light: the reference"),
-]
-AMBIENT = [
-    ("AUTO", "Automatic", "Gathered if the world or lamps shine, else none"),
-    ("CONSTANT", "Unshadowed", "What the world gives to a surface with nothing in between: fast"),
-    ("MESH", "Gathered", "From the world and from other surfaces, after up to fourteen reflections"),
-    ("RAYS", "Gathered by Rays", "By thousands of rays from each surface point: slow"),
-]
+from .choices import AMBIENT, QUALITIES, TECHNIQUES
+
 #: Kept, because Blender does not keep the texts of items that a function returns.
 _devices = []
 
@@ -46,7 +30,7 @@ def device_items(self=None, context: bpy.types.Context | None = None) -> list[tu
 
 class LightmeshSceneSettings(bpy.types.PropertyGroup):
     quality: EnumProperty(name="Quality", items=QUALITIES, default="GOOD", description="How smooth soft shadows and edges are")
-    mode: EnumProperty(name="Shadows", items=MODES, default="LISTS", description="How visibility of lights is computed")
+    mode: EnumProperty(name="Shadows", items=TECHNIQUES, default="LISTS", description="How visibility of lights is computed")
     device: EnumProperty(name="Device", items=device_items, description="What renders")
     samples: IntProperty(name="Light Samples", min=0, max=65535, default=0, description="Samples of each light; 0: by quality")
     pixel_samples: IntProperty(name="Pixel Samples", min=0, max=65536, soft_max=64, default=0, description="Samples of each pixel; 0: by quality")

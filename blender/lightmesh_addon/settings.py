@@ -6,19 +6,12 @@ from typing import Any
 
 import bpy
 
-MODES = {
-    "LISTS": {"mode": "light-mesh", "lookup": "lists"},
-    "ADAPTIVE": {"mode": "light-mesh", "lookup": "adaptive"},
-    "HALF_BALL": {"mode": "light-mesh", "lookup": "half-ball"},
-    "RAY_TRACE": {"mode": "ray-trace"},
-    "AREA": {"mode": "area"},
-}
-
+from .choices import SETTINGS
 
 def of_scene(scene: bpy.types.Scene) -> dict[str, Any]:
     """The settings of images of a scene, without their size."""
     chosen = scene.lightmesh
-    settings = dict(MODES[chosen.mode])
+    settings = dict(SETTINGS[chosen.mode])
     settings["quality"] = chosen.quality.lower()
     settings["bounces"] = chosen.bounces
     settings["ambient_light"] = chosen.ambient_light.lower()

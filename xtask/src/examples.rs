@@ -18,9 +18,9 @@ pub(crate) fn drawings(root: &Path, check: bool) -> Outcome {
     run(root, "lightmesh-render-examples", "drawings", &["docs/drawings"], check)
 }
 
-/// Writes annotations and help of Python's keyword arguments from the table of settings; with `check` only compares them.
+/// Writes annotations and help of Python's keyword arguments, and the menus of Blender's add-on, from the table of settings; with `check` only compares them.
 pub(crate) fn settings(root: &Path, check: bool) -> Outcome {
-    run(root, "lightmesh-bench-examples", "settings", &["crates/python"], check)
+    run(root, "lightmesh-bench-examples", "settings", &["crates/python", "blender/lightmesh_addon"], check)
 }
 
 /// Runs a program in the repository's root. If it fails, each line on stderr is a problem.

@@ -1,15 +1,17 @@
 //! `cargo xtask settings`: annotations and documentation of Python's keyword arguments, made from the table of settings.
 //!
-//! `settings FOLDER [--check]`, where FOLDER is that of the Python package. Each function that takes settings has a type of them in `_settings.py` and a list of
-//! them in its help.
+//! `settings PYTHON BLENDER [--check]`, where PYTHON is the folder of the Python package and BLENDER that of the add-on. Each function that takes settings
+//! has a type of them in `_settings.py` and a list of them in its help. The add-on has the items of its menus in `choices.py`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use lightmesh::render::{AmbientSource, Quality};
 use lightmesh::request::table::{Field, Group, Shape};
 use lightmesh::request::{FIELDS, Words, field};
+use lightmesh::{Lookup, Mode};
 
 /// What takes settings: the name of its type, that of its list, the first sentence of the type, and the groups.
 const TAKERS: [(&str, &str, &str, &[Group]); 4] = [
@@ -68,15 +70,16 @@ _Color = Union[float, ArrayLike]
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (folder, is_check) = match &arguments[..] {
-        [folder] => (Path::new(folder), false),
-        [folder, check] if check == "--check" => (Path::new(folder), true),
+    let ([python, blender], is_check) = match &arguments[..] {
+        [python, blender] => ([python, blender].map(Path::new), false),
+        [python, blender, check] if check == "--check" => ([python, blender].map(Path::new), true),
         _ => {
-            eprintln!("usage: settings FOLDER [--check]");
+            eprintln!("usage: settings PYTHON BLENDER [--check]");
             return ExitCode::from(2);
         }
     };
-    let files = files(folder);
+    let mut files = files(python);
+    files.push((blender.join("choices.py"), choices()));
     for (path, text) in &files {
         let problem = match is_check {
             true if fs::read_to_string(path).is_ok_and(|found| found == *text) => continue,
@@ -111,10 +114,15 @@ fn files(folder: &Path) -> Vec<(PathBuf, String)> {
     files
 }
 
-/// What a setting means, in the words of Python.
+/// A text of the table in the words of Python, which may stand in quotes.
+fn plain(text: &str) -> String {
+    let text = Words::Fields.spell(text.trim().trim_end_matches('.'), |name| field(name).map(|field| field.name));
+    text.replace('"', "'").replace('\\', "\\\\")
+}
+
+/// What a setting means, with its default.
 fn doc(this: &Field) -> String {
-    let text = Words::Fields.spell(this.doc.trim(), |name| field(name).map(|field| field.name));
-    let text = text.replace('"', "'").replace('\\', "\\\\");
+    let text = plain(this.doc);
     match this.default() {
         Some(default) => format!("{text} [default: {default}]"),
         None => text,
@@ -142,4 +150,54 @@ fn annotation(field: &Field) -> String {
         (_, Shape::Color) => "_Color | str".to_owned(),
         (_, Shape::Texts) => "str | Sequence[str]".to_owned(),
     }
+}
+
+/// The first items of the add-on's menu of techniques, in the order of their numbers in files of Blender.
+const TECHNIQUES: [&str; 5] = ["lists", "adaptive", "half-ball", "ray-trace", "area"];
+/// Labels that say more than a name.
+const LABELS: [(&str, &str); 8] = [
+    ("lists", "Occluder Lists"),
+    ("adaptive", "Adaptive Rays"),
+    ("half-ball", "Half-Ball"),
+    ("ray-trace", "Hard Shadows"),
+    ("area", "Area Shadows"),
+    ("auto", "Automatic"),
+    ("constant", "Unshadowed"),
+    ("mesh", "Gathered"),
+];
+
+/// The items of the add-on's menus.
+fn choices() -> String {
+    let lookups = Lookup::ALL.iter().filter(|lookup| **lookup != Lookup::Auto);
+    let mut techniques: Vec<(&str, &str, String)> = lookups
+        .map(|lookup| {
+            let settings = format!("\"mode\": \"{}\", \"lookup\": \"{}\"", Mode::LightMesh.name(), lookup.name());
+            (lookup.name(), lookup.help(), settings)
+        })
+        .collect();
+    let modes = Mode::ALL.iter().filter(|mode| **mode != Mode::LightMesh);
+    techniques.extend(modes.map(|mode| (mode.name(), mode.help(), format!("\"mode\": \"{}\"", mode.name()))));
+    techniques.sort_by_key(|(name, ..)| TECHNIQUES.iter().position(|first| first == name).unwrap_or(TECHNIQUES.len()));
+    let mut text = "\"\"\"The items of menus. Made by `cargo xtask settings`.\"\"\"\n".to_owned();
+    let listed = |name: &str, items: &mut dyn Iterator<Item = String>| format!("\n{name} = [\n{}]\n", items.collect::<String>());
+    text += &listed("QUALITIES", &mut Quality::ALL.iter().map(|quality| item(quality.name(), quality.help())));
+    text += &listed("TECHNIQUES", &mut techniques.iter().map(|(name, help, _)| item(name, help)));
+    text += &listed("AMBIENT", &mut AmbientSource::ALL.iter().map(|source| item(source.name(), source.help())));
+    text += "\n#: What each technique is in settings of a render.\nSETTINGS = {\n";
+    text.extend(techniques.iter().map(|(name, _, settings)| format!("    \"{}\": {{{settings}}},\n", identifier(name))));
+    text + "}\n"
+}
+
+/// What files of Blender call a choice.
+fn identifier(name: &str) -> String {
+    name.replace('-', "_").to_uppercase()
+}
+
+/// An item of a menu: what files call it, its label, and what it means.
+fn item(name: &str, help: &str) -> String {
+    let label = LABELS.iter().find(|(known, _)| *known == name).map_or_else(
+        || format!("{}{}", name[..1].to_uppercase(), &name[1..]),
+        |(_, label)| (*label).to_owned(),
+    );
+    format!("    (\"{}\", \"{label}\", \"{}\"),\n", identifier(name), plain(help))
 }

@@ -38,7 +38,8 @@ def test_stubs_and_module_say_the_same(name):
     thing = _lightmesh
     for part in name.split("."):
         thing = getattr(thing, part)
-    assert words(thing.__doc__) == documented()[name]
+    # Settings are listed by the module, and are annotations in the stubs.
+    assert words(thing.__doc__.split("\n\nSettings:\n")[0]) == documented()[name]
 
 
 def test_everything_is_documented():

@@ -580,9 +580,9 @@ class Renderer:
         cancel: Cancel | None = None,
         **settings: Unpack[FilmSettings],
     ) -> Film:
-        """The frames of a film: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one; `len` says how many are left.
-        With `output`, as in "film.####.png" or "film.mp4", each frame is written before it is returned, and `resume` goes on with a film of which
-        some frames are there. `layers_file`, `stats` and `mesh_file` are written beside it. Raises `SettingError`, `SceneError`, `SaveError`."""
+        """The frames of a film: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, and `len` says how many are left.
+        With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and `mesh_file`, each is written before it is returned; `resume`
+        goes on with a film of which some frames are there."""
     def sun_hours(
         self,
         scene: Scene | Path,
@@ -591,7 +591,7 @@ class Renderer:
         cancel: Cancel | None = None,
         **settings: Unpack[FilmSettings],
     ) -> SunHours:
-        """The hours of direct sun on what an image shows, on the day and at the place of `sun`."""
+        """The hours of direct sun on what an image shows, on a day at a place that `sun` says."""
     def visibility(
         self,
         points: ArrayLike,

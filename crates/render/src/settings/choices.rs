@@ -328,9 +328,9 @@ impl AmbientSource {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            AmbientSource::Auto => "Mesh with sky, environment or only lamps; constant otherwise, or by --ambient",
+            AmbientSource::Auto => "Mesh with sky, environment or only lamps; constant otherwise, or by `ambient`",
             AmbientSource::Constant => "The ambient intensity; under a sky by direction, without shadows",
-            AmbientSource::Mesh => "Gathered from the sky and other surfaces, in place of --ambient",
+            AmbientSource::Mesh => "Gathered from the sky and other surfaces, in place of `ambient`",
             AmbientSource::Rays => "Gathered by thousands of rays at each surface point: slow, the reference",
         }
     }
