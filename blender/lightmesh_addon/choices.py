@@ -18,7 +18,7 @@ AMBIENT = [
     ("AUTO", "Automatic", "Mesh with sky, environment or only lamps; constant otherwise, or by ambient"),
     ("CONSTANT", "Unshadowed", "The ambient intensity; under a sky by direction, without shadows"),
     ("MESH", "Gathered", "Gathered from the sky and other surfaces, in place of ambient"),
-    ("RAYS", "Rays", "Gathered by thousands of rays at each surface point: slow, the reference"),
+    ("RAYS", "Gathered by Rays", "Gathered by thousands of rays at each surface point: slow, the reference"),
 ]
 
 #: What each technique is in settings of a render.

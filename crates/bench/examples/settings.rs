@@ -155,7 +155,7 @@ fn annotation(field: &Field) -> String {
 /// The first items of the add-on's menu of techniques, in the order of their numbers in files of Blender.
 const TECHNIQUES: [&str; 5] = ["lists", "adaptive", "half-ball", "ray-trace", "area"];
 /// Labels that say more than a name.
-const LABELS: [(&str, &str); 8] = [
+const LABELS: [(&str, &str); 9] = [
     ("lists", "Occluder Lists"),
     ("adaptive", "Adaptive Rays"),
     ("half-ball", "Half-Ball"),
@@ -164,6 +164,7 @@ const LABELS: [(&str, &str); 8] = [
     ("auto", "Automatic"),
     ("constant", "Unshadowed"),
     ("mesh", "Gathered"),
+    ("rays", "Gathered by Rays"),
 ];
 
 /// The items of the add-on's menus.
@@ -179,12 +180,15 @@ fn choices() -> String {
     techniques.extend(modes.map(|mode| (mode.name(), mode.help(), format!("\"mode\": \"{}\"", mode.name()))));
     techniques.sort_by_key(|(name, ..)| TECHNIQUES.iter().position(|first| first == name).unwrap_or(TECHNIQUES.len()));
     let mut text = "\"\"\"The items of menus. Made by `cargo xtask settings`.\"\"\"\n".to_owned();
-    let listed = |name: &str, items: &mut dyn Iterator<Item = String>| format!("\n{name} = [\n{}]\n", items.collect::<String>());
+    let listed =
+        |name: &str, items: &mut dyn Iterator<Item = String>| format!("\n{name} = [\n{}]\n", items.collect::<String>());
     text += &listed("QUALITIES", &mut Quality::ALL.iter().map(|quality| item(quality.name(), quality.help())));
     text += &listed("TECHNIQUES", &mut techniques.iter().map(|(name, help, _)| item(name, help)));
     text += &listed("AMBIENT", &mut AmbientSource::ALL.iter().map(|source| item(source.name(), source.help())));
     text += "\n#: What each technique is in settings of a render.\nSETTINGS = {\n";
-    text.extend(techniques.iter().map(|(name, _, settings)| format!("    \"{}\": {{{settings}}},\n", identifier(name))));
+    text.extend(
+        techniques.iter().map(|(name, _, settings)| format!("    \"{}\": {{{settings}}},\n", identifier(name))),
+    );
     text + "}\n"
 }
 
@@ -195,9 +199,9 @@ fn identifier(name: &str) -> String {
 
 /// An item of a menu: what files call it, its label, and what it means.
 fn item(name: &str, help: &str) -> String {
-    let label = LABELS.iter().find(|(known, _)| *known == name).map_or_else(
-        || format!("{}{}", name[..1].to_uppercase(), &name[1..]),
-        |(_, label)| (*label).to_owned(),
-    );
+    let label = LABELS
+        .iter()
+        .find(|(known, _)| *known == name)
+        .map_or_else(|| format!("{}{}", name[..1].to_uppercase(), &name[1..]), |(_, label)| (*label).to_owned());
     format!("    (\"{}\", \"{label}\", \"{}\"),\n", identifier(name), plain(help))
 }

@@ -126,7 +126,8 @@ impl Film {
         let next = |watch: &Watch| {
             let mut frames = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
             let rendered = frames.next(&renderer.engine, watch).transpose()?;
-            Ok::<_, Error>(rendered.map(|rendered| Frame::of_film(rendered, watch.notes())))
+            let request = &frames.plan().order.request;
+            Ok::<_, Error>(rendered.map(|rendered| Frame::of_film(rendered, request, watch.notes())))
         };
         watch::run(py, wishes, next)?.or_raise()
     }

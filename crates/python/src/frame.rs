@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::Vec3;
 use lightmesh::image::{Description, Format, Layers, publish};
 use lightmesh::request::film::RenderedFrame;
-use lightmesh::request::{StoragePlan, describe};
+use lightmesh::request::{Request, StoragePlan, describe};
 use lightmesh::scene;
 use lightmesh::{Frame as Rendered, Scene};
 use lightmesh_files::visible;
@@ -28,6 +28,8 @@ pub(crate) struct Frame {
     stops: f32,
     notes: Vec<String>,
     description: Description,
+    /// How its files store it, unless `save` says otherwise.
+    storage: Request,
     /// Its number in a film, if it is of one.
     number: Option<u32>,
     /// The time of day in a sun study.
@@ -73,15 +75,16 @@ impl Frame {
     pub(crate) fn new(rendered: Rendered, stops: f32, notes: Vec<String>, world: &Scene) -> Frame {
         let camera: Option<&scene::Camera> = world.cameras.first();
         let description = describe(&rendered, world.to_world(Vec3::ZERO), camera);
-        Frame { rendered, stops, notes, description, number: None, when: String::new() }
+        let storage = Request::default();
+        Frame { rendered, stops, notes, description, storage, number: None, when: String::new() }
     }
 
-    /// A frame of a film.
-    pub(crate) fn of_film(
-        RenderedFrame { number, when, scene, frame, stops }: RenderedFrame,
-        notes: Vec<String>,
-    ) -> Frame {
-        Frame { number: Some(number), when, ..Frame::new(frame, stops, notes, &scene) }
+    /// A frame of a film of this request.
+    pub(crate) fn of_film(rendered: RenderedFrame, request: &Request, notes: Vec<String>) -> Frame {
+        let RenderedFrame { number, when, scene, frame, stops } = rendered;
+        // The exposure is that of the film.
+        let storage = Request { exposure: None, ..request.clone() };
+        Frame { storage, number: Some(number), when, ..Frame::new(frame, stops, notes, &scene) }
     }
 
     pub(crate) fn layers(&self) -> PyResult<&Layers> {
@@ -93,7 +96,8 @@ impl Frame {
     }
 
     fn options(&self, settings: Option<&Bound<'_, PyDict>>) -> PyResult<lightmesh::image::SaveOptions> {
-        let request = settings::of(settings, SAVE)?;
+        let mut request = self.storage.clone();
+        settings::apply(&mut request, settings, SAVE)?;
         Ok(StoragePlan::new(&request).options(&self.rendered, self.stops, self.description.clone()))
     }
 }

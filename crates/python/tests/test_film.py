@@ -44,6 +44,16 @@ def test_files_are_written_and_a_film_goes_on(renderer, tmp_path):
         renderer.film("builtin:gazebo", output, turntable=4, **SETTINGS)
 
 
+def test_frames_are_stored_as_the_film_says(renderer, scene, tmp_path):
+    settings = {"turntable": 1, "size": (32, 24), "bit_depth": 16, "view": "neutral", "exposure": 1.5}
+    (frame,) = renderer.film(scene, tmp_path / "a.#.png", **settings)
+    frame.save(tmp_path / "b.png")
+    assert (tmp_path / "a.1.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    assert frame.exposure == 1.5
+    frame.save(tmp_path / "c.png", bit_depth=8)
+    assert (tmp_path / "c.png").stat().st_size < (tmp_path / "b.png").stat().st_size
+
+
 def test_a_scene_of_arrays(renderer, scene, tmp_path):
     rgb = [frame.rgb.mean() for frame in renderer.film(scene, turntable=2, size=(32, 24))]
     assert len(rgb) == 2 and rgb[0] != rgb[1]

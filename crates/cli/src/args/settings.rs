@@ -136,7 +136,11 @@ fn parser(field: &'static Field) -> ValueParser {
     }
     let values = choices.into_iter().map(|choice| {
         let value = PossibleValue::new(choice.name);
-        if choice.help.is_empty() { value } else { value.help(Words::Flags.spell(choice.help.trim_end_matches('.'), known)) }
+        if choice.help.is_empty() {
+            value
+        } else {
+            value.help(Words::Flags.spell(choice.help.trim_end_matches('.'), known))
+        }
     });
     PossibleValuesParser::new(values).into()
 }
