@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use lightmesh_image::{FrameParts, Layers, SaveError};
+use lightmesh_kernels::{Driver, Runtime};
 use lightmesh_memory::Budget;
 use lightmesh_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -19,7 +20,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::backend::run::Run;
 use crate::backend::{Backend, Cpu, Cuda};
 use crate::cache::{Kept, MeshCache, MeshFileError};
-use crate::cuda::{Driver, Runtime};
 use crate::data::picture::Picture;
 use crate::device::{Choice, Chosen, Device};
 use crate::error::RenderError;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::Out;
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
@@ -10,7 +11,6 @@ use lightmesh_layout::stages::{Shadows, Weighed};
 
 use super::Aim;
 use super::rows::Rows;
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{Cuda, PerStructure, Work, sampling, warps_for};

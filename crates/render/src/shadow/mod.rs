@@ -13,8 +13,8 @@ pub(crate) mod weights;
 use glam::Vec3;
 use lightmesh_layout::constants::HORIZON_SAMPLES;
 use lightmesh_scene::{Light, LightKind};
+use lightmesh_trace::accel::Ray;
 
-use crate::accel::Ray;
 use crate::counters::Tally;
 use crate::data::wave::{HostWave, Wave};
 use crate::job::Sampling;

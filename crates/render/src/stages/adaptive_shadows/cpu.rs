@@ -47,7 +47,7 @@ struct Band<'a> {
     /// All rows.
     rows: Range<u32>,
     /// Rays and hits of the rows next to the wave's.
-    margins: Vec<(crate::data::rays::RayList, Vec<crate::accel::Hit>)>,
+    margins: Vec<(crate::data::rays::RayList, Vec<lightmesh_trace::accel::Hit>)>,
     places: Places,
 }
 

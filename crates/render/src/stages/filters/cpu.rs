@@ -3,11 +3,11 @@
 use glam::Vec3;
 use lightmesh_layout::constants::{FILTER_LEVELS, MOST_THROUGHS, PART_OF_LEVEL};
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::{Hit, Ray, TangentPlanes};
 use rayon::prelude::*;
 
 use super::levels;
 use super::shown::may_show;
-use crate::accel::{Hit, Ray, TangentPlanes};
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::{HostWave, Wave};

@@ -1,9 +1,9 @@
 //! Filtered light on a CUDA device.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::stages::{Filters, Shadows};
 
 use super::levels;
-use crate::cuda::Runtime;
 use crate::data::wave::Wave;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};

@@ -7,11 +7,12 @@ use fearless_simd::prelude::*;
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::{Bvh, Form, TangentPlanes};
+use lightmesh_trace::simd::{LANES, dispatch};
 use rayon::prelude::*;
 
 use super::candidates::{Candidates, above_planes};
 use super::group::{Group, View};
-use crate::accel::{Bvh, Form, TangentPlanes};
 use crate::counters::Tally;
 use crate::data::items::Items;
 use crate::data::visibility::Visibility;
@@ -23,7 +24,6 @@ use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::sight::Emitter;
 use crate::shadow::terminator::ShadowPoint;
 use crate::shadow::weights::Weighed;
-use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
 /// Items per task.

@@ -1,8 +1,8 @@
 //! Shadow rays on the CPU: batch by batch of surface points, light by light, so that segments towards one light are traced together.
 
+use lightmesh_trace::accel::Ray;
 use rayon::prelude::*;
 
-use crate::accel::Ray;
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;

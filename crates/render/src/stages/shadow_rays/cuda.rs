@@ -1,8 +1,8 @@
 //! Shadow rays on a CUDA device.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::stages::{ShadowRays, Shadows};
 
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerStructure, Work, blocks_for, per_structure, slices_of_rays};
