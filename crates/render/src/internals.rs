@@ -151,7 +151,7 @@ pub mod shadow {
     pub use crate::shadow::above_horizon;
     pub use crate::shadow::cuts::Cuts;
     pub use crate::shadow::occlusion::Sights;
-    pub use crate::shadow::rows::{KNOWN, MOST_KNOWN, Rows};
+    pub use crate::shadow::rows::{KnownRows, MOST_KNOWN, Rows};
     pub use crate::shadow::sample_ray::SampleRays;
     pub use crate::shadow::sight::Sight;
     pub use crate::shadow::terminator::ShadowPoint;

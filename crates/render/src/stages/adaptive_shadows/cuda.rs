@@ -40,7 +40,7 @@ pub(crate) fn adaptive_shadows<R: Runtime>(
     }
     let (rays, lights) = (wave.rays.len(), wave.group());
     let visibility = DeviceVisibility::dark(cuda, rays, lights.clone())?;
-    let band = Band::new(cuda, wave, SampleSets::new(aim))?;
+    let band = Band::new(cuda, wave, SampleSets::new(wave.rows(aim)))?;
     // Entries are numbered with 32 bits.
     let at_once = LIGHTS.min(u32::MAX as usize / rays.max(1)).max(1);
     for first in lights.clone().step_by(at_once) {

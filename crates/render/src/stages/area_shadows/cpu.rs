@@ -16,7 +16,6 @@ use crate::prepared::PreparedGeometry;
 use crate::shadow::Aim;
 use crate::shadow::cuts::Cuts;
 use crate::shadow::occlusion::{Bits, Offsets, Sights, gathered};
-use crate::shadow::rows::Rows;
 use crate::shadow::sight::{Emitter, Sight};
 use crate::surface::SurfacePoint;
 
@@ -25,7 +24,7 @@ const BATCH: usize = 256;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
-    let rows = Rows::of(aim);
+    let rows = wave.rows(aim);
     let emitters = Emitter::all(wave, aim, &rows);
     let mut visibility = Visibility { weighed: true, ..Visibility::dark(wave.group(), wave.hits.len()) };
     let level = Level::new();

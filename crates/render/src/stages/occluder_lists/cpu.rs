@@ -19,7 +19,6 @@ use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shadow::Aim;
 use crate::shadow::occlusion::gathered;
-use crate::shadow::rows::Rows;
 use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::sight::Emitter;
 use crate::shadow::terminator::ShadowPoint;
@@ -52,7 +51,7 @@ const LEAST_SPENT: f64 = 2.0;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visibility {
-    let rows = Rows::of(aim);
+    let rows = wave.rows(aim);
     let emitters = Emitter::all(wave, aim, &rows);
     let level = Level::new();
     // Each share has one writer.

@@ -63,7 +63,7 @@ fn to_samples<R: Runtime>(
 ) -> Result<(), RenderError> {
     let lights = visibility.lights.len() as u64;
     let kernel = TO_SAMPLES.of(wave.scene);
-    let sets = SampleSets::new(aim);
+    let sets = SampleSets::new(wave.rows(aim));
     let slices = u64::from(sets.count) * lights;
     let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices;
     for slice in 0..slices {
