@@ -386,7 +386,7 @@ fn picture_on<B: Backend>(
     let mut picture = Picture::planned(&plan, [rows.clone(), rows]);
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
-    if technique.template() > 0 {
+    if settings.has_light_points() {
         plan.reserved = run.begin_kept(backend.left(&plan));
         if backend.rows_at_once(&on_device, &plan).is_err() {
             // All of it is needed for the image.
