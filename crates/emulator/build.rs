@@ -24,9 +24,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let here = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
-    let renderer = here.join("../render/src").canonicalize()?;
+    // As for the compiler of devices (`xtask/src/kernels/mod.rs`): includes are searched for in all of them.
+    let mut folders = Vec::new();
+    for name in ["kernels", "trace", "render"] {
+        folders.push(here.join("..").join(name).join("src").canonicalize()?);
+    }
     // Folders are watched as a whole, so that new files are noticed.
-    for folder in [&renderer, &here.join("shim"), &here.join("kernels")] {
+    for folder in folders.iter().chain([&here.join("shim"), &here.join("kernels")]) {
         println!("cargo::rerun-if-changed={}", folder.display());
     }
     if !has_compiler(&out)? {
@@ -39,12 +43,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo::rustc-cfg=no_cxx");
         return Ok(());
     }
-    let sources = sources(&[&renderer, &here])?;
+    let sources = sources(folders.iter().chain([&here]))?;
     let mut modules = modules(&sources)?;
     if let Ok(chosen) = env::var("LIGHTMESH_EMULATE") {
         modules.retain(|(module, _)| *module == "own" || chosen.split(',').any(|name| name == *module));
     }
-    compile(&sources, &modules, &[&here.join("shim"), &renderer], &out)?;
+    folders.insert(0, here.join("shim"));
+    compile(&sources, &modules, &folders, &out)?;
     if has_fma() {
         println!("cargo::rustc-cfg=needs_fma");
     }
@@ -66,7 +71,7 @@ fn has_compiler(out: &Path) -> Result<bool, Box<dyn Error>> {
 fn compile(
     sources: &[PathBuf],
     modules: &[(&str, &Path)],
-    include: &[&Path],
+    include: &[PathBuf],
     out: &Path,
 ) -> Result<(), Box<dyn Error>> {
     let state = state(sources, modules)?;
@@ -135,9 +140,9 @@ fn state(sources: &[PathBuf], modules: &[(&str, &Path)]) -> Result<Vec<u8>, Box<
 }
 
 /// The C++ files under some folders, in order.
-fn sources(folders: &[&Path]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+fn sources<'a>(folders: impl Iterator<Item = &'a PathBuf>) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let mut found = Vec::new();
-    let mut folders: Vec<PathBuf> = folders.iter().map(|folder| folder.to_path_buf()).collect();
+    let mut folders: Vec<PathBuf> = folders.cloned().collect();
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(folder)? {
             let path = entry?.path();

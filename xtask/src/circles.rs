@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use crate::{Outcome, Verdict};
 
 /// Crates to check.
-const CRATES: [&str; 1] = ["crates/render/src"];
+const CRATES: [&str; 3] = ["crates/kernels/src", "crates/trace/src", "crates/render/src"];
 
 /// A module, as its path from the crate's root, such as `["accel", "bvh"]`.
 type Module = Vec<String>;

@@ -20,7 +20,8 @@ use kernels::Task;
 
 const USAGE: &str = "\
 usage: cargo xtask check-docs          checks that every file that the documents name exists
-       cargo xtask circles             checks that no modules of the renderer import each other in a circle
+       cargo xtask circles             checks that no modules of the renderer, and of the crates of rays and kernels,
+                                       import each other in a circle
        cargo xtask kernels [--check [--recompile]]
                                        writes the layout header, the kernels' PTX and docs/kernels.md
        cargo xtask map [--check]       writes docs/map.md: each source file with the first sentence of its header

@@ -12,11 +12,11 @@ use std::sync::OnceLock;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x8, u32x8};
 use lightmesh_layout::constants::{FILTER_PLACES, FILTER_STEPS, MARGIN_ROWS, MOST_SHARED, PIXEL_PATTERN};
+use lightmesh_trace::accel::Ray;
+use lightmesh_trace::simd::{LANES, dispatch};
 
-use crate::accel::Ray;
 use crate::sampling::Pattern;
 use crate::settings::Filter;
-use crate::simd::{LANES, dispatch};
 use crate::view::View;
 
 /// Samples in a wave if none are shared.

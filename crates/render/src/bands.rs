@@ -1,8 +1,8 @@
 //! How many rows of an image fit into the host's memory at once.
 
 use lightmesh_memory::Short;
+use lightmesh_trace::accel::{Hit, Ray};
 
-use crate::accel::{Hit, Ray};
 use crate::error::RenderError;
 use crate::footprint::Cone;
 use crate::gathered::Gathering;

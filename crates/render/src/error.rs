@@ -2,10 +2,11 @@
 
 use std::convert::Infallible;
 
+use lightmesh_kernels::DeviceError;
 use lightmesh_memory::Short;
 use lightmesh_scene::GeometryError;
+use lightmesh_trace::accel::{GridError, GridFileError};
 
-use crate::accel::{GridError, GridFileError};
 use crate::light_mesh::{LatticeError, TemplateError};
 use crate::settings::Setting;
 
@@ -147,6 +148,18 @@ pub enum RenderError {
     /// The observer requested cancellation.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<DeviceError> for RenderError {
+    fn from(error: DeviceError) -> RenderError {
+        match error {
+            DeviceError::Unusable { device, reason } => RenderError::Device { device, reason },
+            DeviceError::Memory { device, buffer, needed, free } => {
+                RenderError::DeviceMemory { device, buffer, needed, free }
+            }
+            DeviceError::Fault { device, reason } => RenderError::DeviceFault { device, reason },
+        }
+    }
 }
 
 impl RenderError {

@@ -20,8 +20,8 @@
 use glam::{Vec2, Vec3};
 use lightmesh_layout::constants::{LEAST_FOOTPRINT_COSINE, LEAST_SMOOTH_SQUARE, LEAST_SQUARE};
 use lightmesh_scene::Mesh;
+use lightmesh_trace::accel::{Hit, Ray};
 
-use crate::accel::{Hit, Ray};
 use crate::surface::smooth_at;
 
 /// A cone around a ray. Without a width, textures are looked up at points.

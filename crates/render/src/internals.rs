@@ -3,13 +3,8 @@
 //! Tests are a crate of their own, so that the renderer is compiled once, not a second time with its tests.
 
 pub mod accel {
-    pub use crate::accel::beam::Beams;
-    pub use crate::accel::bvh::build::{Child, LEVELS, Work, children, depth, extent, planes, tree};
-    pub use crate::accel::coverage::{Coverage, between};
-    pub use crate::accel::distinct::distinct;
-    pub use crate::accel::grid::distance::spread;
-    pub use crate::accel::grid::file::{HEADER, Header, TRAILER, decode};
-    pub use crate::accel::grid::overlap::triangle_meets_box;
+    pub use lightmesh_trace::accel::{Beams, Coverage};
+    pub use lightmesh_trace::internals::*;
 }
 
 pub mod antialiasing {
@@ -31,12 +26,8 @@ pub mod cache {
 
 pub mod cuda {
     #[cfg(feature = "cuda")]
-    pub use crate::cuda::driver::library::Unavailable;
-    #[cfg(feature = "cuda")]
-    pub use crate::cuda::driver::open::no_such_device;
-    #[cfg(feature = "cuda")]
-    pub use crate::cuda::driver::ptx::{MODULES, Module, Needs, VERSIONS, directive};
-    pub use crate::cuda::gpu::{Gpu, Version, capability};
+    pub use lightmesh_kernels::internals::*;
+    pub use lightmesh_kernels::{Gpu, Version, capability};
 }
 
 pub mod data {
@@ -160,15 +151,14 @@ pub mod shadow {
     pub use crate::shadow::above_horizon;
     pub use crate::shadow::cuts::Cuts;
     pub use crate::shadow::occlusion::Sights;
-    pub use crate::shadow::rows::{KNOWN, MOST_KNOWN, Rows};
+    pub use crate::shadow::rows::{KnownRows, MOST_KNOWN, Rows};
     pub use crate::shadow::sample_ray::SampleRays;
     pub use crate::shadow::sight::Sight;
     pub use crate::shadow::terminator::ShadowPoint;
 }
 
 pub mod simd {
-    pub use crate::dispatch;
-    pub use crate::simd::lanes::{LANES, splat};
+    pub use lightmesh_trace::simd::{LANES, dispatch, splat};
 }
 
 pub mod stages {
@@ -189,5 +179,5 @@ pub mod textures {
     pub use crate::textures::encoding::Encoding;
     pub use crate::textures::levels::{AllLevels, MipLevels, bytes_to_build, packed, unpacked};
     pub use crate::textures::lookup::{at_level, filtered, level_of, sampled};
-    pub use crate::textures::neighbours::neighbours;
+    pub use lightmesh_trace::textures::neighbours;
 }

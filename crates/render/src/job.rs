@@ -1,7 +1,7 @@
 //! What all stages of one image share: settings, counts, clocks, progress and the observer.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use lightmesh_scene::Lights;
@@ -11,6 +11,7 @@ use crate::error::RenderError;
 use crate::observer::Observer;
 use crate::progress::Work;
 use crate::settings::{ShadowTests, ShortTests};
+use crate::shadow::rows::KnownRows;
 use crate::stage::{Seconds, Stage};
 
 /// How area lights are sampled.
@@ -53,6 +54,8 @@ pub struct Job<'a> {
     /// How much is done.
     #[doc(hidden)]
     pub work: Work,
+    /// Where the samples of lights lie.
+    pub(crate) rows: Arc<KnownRows>,
     seconds: Mutex<Seconds>,
     /// Set when some work was skipped because the observer requested cancellation.
     stopped: AtomicBool,
@@ -71,6 +74,7 @@ impl<'a> Job<'a> {
             pixel_samples: 1,
             tally,
             work,
+            rows: Arc::default(),
             seconds: Mutex::default(),
             stopped: AtomicBool::new(false),
         }
@@ -89,6 +93,11 @@ impl<'a> Job<'a> {
     /// The same with so many samples of a pixel.
     pub fn with_pixel_samples(self, pixel_samples: u32) -> Job<'a> {
         Job { pixel_samples, ..self }
+    }
+
+    /// The same with rows of samples that images share.
+    pub(crate) fn with_rows(self, rows: &Arc<KnownRows>) -> Job<'a> {
+        Job { rows: Arc::clone(rows), ..self }
     }
 
     /// Does a piece of the current stage's work, and reports that `pieces` more are done. Does nothing if the observer has requested

@@ -9,13 +9,11 @@
 //! Data flows one way: [`Scene`](lightmesh_scene::Scene) ▶ [`PreparedScene`] ▶ hits ▶ cells ▶ masks ▶ light points ▶ visibility ▶
 //! radiance ▶ [`Frame`].
 
-pub mod accel;
 mod antialiasing;
 pub mod backend;
 mod bands;
 mod cache;
 mod counters;
-pub mod cuda;
 mod data;
 mod device;
 mod error;
@@ -39,7 +37,6 @@ pub mod sampling;
 mod settings;
 mod shading;
 mod shadow;
-mod simd;
 mod stage;
 mod stages;
 mod stats;
@@ -48,6 +45,23 @@ mod sync;
 mod techniques;
 mod textures;
 mod view;
+
+/// Acceleration structures, of [`lightmesh_trace`].
+pub mod accel {
+    pub use lightmesh_trace::accel::triangle;
+    pub use lightmesh_trace::accel::{
+        Accelerator, BruteForce, Bvh, BvhCost, Form, Grid, GridError, GridFault, GridFileError, GridOptions,
+        GridSaveError, Hit, Levels, PIECE, Ray, Region, ShortSegments, ShortTest, Take, TangentPlanes, Triangle,
+        Triangles,
+    };
+}
+
+/// What a CUDA device, or a substitute for one, must provide, and typed memory on it; of [`lightmesh_kernels`].
+pub mod cuda {
+    pub use lightmesh_kernels::{
+        Buffer, DeviceError, DeviceMemory, Driver, Event, Fault, Kernel, Launch, Pool, Runtime, new_id, open_cuda,
+    };
+}
 
 pub use cache::{DeviceTable, HostTable, Kept, MeshCache, MeshFault, MeshFileError, MeshSaveError, SavedMesh, Table};
 pub use counters::{Counts, Tally};

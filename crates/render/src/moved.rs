@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use lightmesh_scene::{Bounds, Geometry, Instance};
-
-use crate::accel::Triangle;
+use lightmesh_trace::accel::Triangle;
 
 /// Boxes around what moved, at most: more are put together.
 const MOST_BOXES: usize = 64;

@@ -1,6 +1,7 @@
 //! The image to render, and the memory limits.
 
-use crate::accel::Hit;
+use lightmesh_trace::accel::Hit;
+
 use crate::antialiasing::Antialiasing;
 use crate::data::lights::LightGroups;
 use crate::data::mattes::{ranks_of, slots_of};

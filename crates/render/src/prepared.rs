@@ -8,12 +8,12 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use glam::Vec3;
 use lightmesh_memory::{Budget, Short};
 use lightmesh_scene::{Bounds, Camera, Geometry, Instance, Lights, Material, Mesh, Scene, Texture};
-use xxhash_rust::xxh3::Xxh3;
-
-use crate::accel::{
+use lightmesh_trace::accel::{
     Accelerator, Beams, BruteForce, Bvh, Coverage, Form, Grid, GridOptions, Triangle, Triangles, coverage,
     geometry_hash,
 };
+use xxhash_rust::xxh3::Xxh3;
+
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
 use crate::moved::{around_both, boxes, differ_by_places};
@@ -244,7 +244,7 @@ impl PreparedGeometry {
             hash.update(&geometry_hash(self.triangles.stored()).to_le_bytes());
             self.triangles.instances().iter().for_each(|instance| hash.update(&instance.key()));
             hash.update(&self.held.to_le_bytes());
-            self.coverage.hash(&mut hash);
+            self.coverage.add_to_hash(&mut hash);
             hash.digest()
         })
     }

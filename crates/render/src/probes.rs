@@ -8,8 +8,8 @@ use std::ops::Range;
 use glam::Vec3;
 use lightmesh_layout::geometry::ListedRay;
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::{Hit, Ray, Triangle};
 
-use crate::accel::{Hit, Ray, Triangle};
 use crate::data::rays::RayList;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/instanced.cuh"
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 
 // A surface point P.
 struct SurfacePoint {

@@ -3,8 +3,7 @@
 use glam::Vec3;
 use lightmesh_layout::constants::{GAMMA_32, LEAST_SMOOTH_SQUARE, LEAST_SQUARE, LEAST_STEEPNESS};
 use lightmesh_scene::Mesh;
-
-use crate::accel::{Hit, Ray, Triangle};
+use lightmesh_trace::accel::{Hit, Ray, Triangle};
 
 /// A surface point P.
 #[derive(Clone, Copy, Debug, Default)]

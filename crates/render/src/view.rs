@@ -5,9 +5,8 @@ use fearless_simd::prelude::*;
 use glam::Vec3;
 use lightmesh_layout::geometry as layout;
 use lightmesh_scene::{Camera, Projection};
-
-use crate::accel::Ray;
-use crate::simd::{Axes, LANES, dot, scaled, splat, sum};
+use lightmesh_trace::accel::Ray;
+use lightmesh_trace::simd::{Axes, LANES, dot, scaled, splat, sum};
 
 /// A rectangle of an image's pixels.
 ///

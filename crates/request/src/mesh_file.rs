@@ -7,7 +7,7 @@ use lightmesh_render::{AmbientSource, MeshCache, MeshFileError, PreparedScene, R
 
 use crate::error::Error;
 use crate::host::Host;
-use crate::plan::{Plan, has_light_points};
+use crate::plan::Plan;
 
 /// What light points see and surfaces gather, and the file that it is kept in.
 pub(crate) struct Mesh {
@@ -27,7 +27,7 @@ impl Mesh {
         let mut mesh = Mesh { cache: MeshCache::new(), file: None };
         let Some(path) = plan.order.files.mesh_file.as_deref() else { return Ok(mesh) };
         let gathers = plan.settings.ambient_light.for_scene(&prepared.scene) == AmbientSource::Mesh;
-        if !(has_light_points(&plan.settings) || gathers) || moves {
+        if !(plan.settings.has_light_points() || gathers) || moves {
             let words = host.words();
             let why = if moves {
                 "surfaces move in this film, and each frame would need a file of its own".to_owned()

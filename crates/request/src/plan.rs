@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use lightmesh_files::directory;
-use lightmesh_render::{Acceleration, Lookup, Mode, Settings};
+use lightmesh_render::{Acceleration, Settings};
 use lightmesh_scene::{CreaseAngle, Instancing, LoadOptions, SceneFormat};
 
 use crate::error::RequestError;
@@ -130,10 +130,5 @@ fn instancing(request: &Request, settings: &Settings) -> Instancing {
 
 /// The half-ball stands for the thesis, whose surfaces are facets.
 fn usual_smooth(settings: &Settings) -> Smooth {
-    if has_light_points(settings) { Smooth::OFF } else { Smooth::default() }
-}
-
-/// Whether there is a lattice of light points, with its step: of all techniques, only the thesis' has one.
-pub(crate) fn has_light_points(settings: &Settings) -> bool {
-    settings.mode == Mode::LightMesh && settings.resolved_lookup() == Lookup::HalfBall
+    if settings.has_light_points() { Smooth::OFF } else { Smooth::default() }
 }

@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::ffi::{CString, c_char};
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 use cudarc::nvrtc::result::{self, NvrtcError};
@@ -100,7 +99,7 @@ fn committed(source: &Source) -> Result<String, String> {
 }
 
 fn compile(source: &Source) -> Result<String, Box<dyn Error>> {
-    let text = CString::new(fs::read(Path::new(SOURCES).join(&source.path))?)?;
+    let text = CString::new(fs::read(source.folder.join(&source.path))?)?;
     let name = CString::new(source.path.as_os_str().as_encoded_bytes())?;
     let program = result::create_program(&text, Some(&name))?;
     // SAFETY: just created, and destroyed below; text and name live until then.
@@ -113,8 +112,8 @@ fn compile(source: &Source) -> Result<String, Box<dyn Error>> {
 /// # Safety
 /// `program` is valid.
 unsafe fn compile_program(program: sys::nvrtcProgram) -> Result<String, Box<dyn Error>> {
-    let include = format!("--include-path={SOURCES}");
-    let options: Vec<&str> = OPTIONS.into_iter().chain([include.as_str()]).collect();
+    let folders = SOURCES.map(|folder| format!("--include-path={folder}"));
+    let options: Vec<&str> = OPTIONS.into_iter().chain(folders.iter().map(String::as_str)).collect();
     // SAFETY: guaranteed by the caller, for all three calls.
     let (compiled, log) =
         unsafe { (result::compile_program(program, &options), text(result::get_program_log(program))?) };

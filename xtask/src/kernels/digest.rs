@@ -1,6 +1,6 @@
 //! Digests of what products are made from: whether a product is fresh is known without making it again.
 //!
-//! `crates/render/src/cuda/ptx/digests.txt` has a line for each product: its name, the digest of its inputs and its own. The inputs of a module
+//! `crates/kernels/src/cuda/ptx/digests.txt` has a line for each product: its name, the digest of its inputs and its own. The inputs of a module
 //! are its kernel file with all headers that it includes, the options and the pinned compiler; those of the report are all modules and the pinned
 //! assembler.
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::Xxh3;
 
 /// The file of all digests.
-pub(super) const FILE: &str = "crates/render/src/cuda/ptx/digests.txt";
+pub(super) const FILE: &str = "crates/kernels/src/cuda/ptx/digests.txt";
 
 /// The digests of a product: of its inputs, and of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,8 +32,8 @@ pub(super) fn of<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> u128 {
     hash.digest128()
 }
 
-/// The digest of a kernel file under `folder`, the headers that it includes, and `settings`.
-pub(super) fn of_inputs(folder: &Path, source: &Path, settings: &str) -> Result<u128, Box<dyn Error>> {
+/// The digest of a kernel file in one of `folders`, the headers that it includes, and `settings`.
+pub(super) fn of_inputs(folders: &[&Path], source: &Path, settings: &str) -> Result<u128, Box<dyn Error>> {
     let mut files = BTreeMap::new();
     let mut waiting = vec![source.to_owned()];
     while let Some(path) = waiting.pop() {
@@ -41,10 +41,10 @@ pub(super) fn of_inputs(folder: &Path, source: &Path, settings: &str) -> Result<
             continue;
         }
         // A header that is not there is for the host's compiler alone; should it appear, the digest changes.
-        let text = match fs::read_to_string(folder.join(&path)) {
-            Err(_) if path != source => None,
-            text => Some(text.map_err(|error| format!("cannot read {}: {error}", folder.join(&path).display()))?),
-        };
+        let text = folders.iter().find_map(|folder| fs::read_to_string(folder.join(&path)).ok());
+        if text.is_none() && path == source {
+            return Err(format!("cannot read {}", path.display()).into());
+        }
         waiting.extend(text.iter().flat_map(|text| includes(text)));
         files.insert(path, text);
     }
@@ -55,7 +55,7 @@ pub(super) fn of_inputs(folder: &Path, source: &Path, settings: &str) -> Result<
     Ok(of(parts))
 }
 
-/// The files that a source includes by name, relative to the folder of all sources.
+/// The files that a source includes by name, relative to a folder of sources.
 fn includes(text: &str) -> impl Iterator<Item = PathBuf> {
     let name = |line: &str| {
         Some(line.trim_start().strip_prefix("#include")?.trim().strip_prefix('"')?.split('"').next()?.into())
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     fn digest(folder: &Path, settings: &str) -> u128 {
-        of_inputs(folder, Path::new("a/kernel.cu"), settings).unwrap()
+        of_inputs(&[&folder.join("b"), folder], Path::new("a/kernel.cu"), settings).unwrap()
     }
 
     #[test]
@@ -128,7 +128,7 @@ mod tests {
         let before = digest(folder.path(), "options");
         write("a/kernel.cu", "#include \"a/direct.cuh\"\n");
         assert_ne!(digest(folder.path(), "options"), before);
-        assert!(of_inputs(folder.path(), Path::new("b/kernel.cu"), "").is_err());
+        assert!(of_inputs(&[folder.path()], Path::new("b/kernel.cu"), "").is_err());
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! `cargo xtask kernels`: committed files generated from the CUDA kernels.
 //!
-//! 1. `crates/render/src/cuda/layout.cuh` from the records of `crates/layout`.
-//! 2. `crates/render/src/cuda/ptx/<module>.ptx` from each kernel file: the code that users' drivers compile.
+//! 1. `crates/kernels/src/cuda/layout.cuh` from the records of `crates/layout`.
+//! 2. `crates/kernels/src/cuda/ptx/<module>.ptx` from each kernel file: the code that users' drivers compile.
 //! 3. `docs/kernels.md`: the resources of each kernel, as reported by `ptxas`.
-//! 4. `crates/render/src/cuda/ptx/digests.txt`: the digests of what 2 and 3 are made from, and of themselves.
+//! 4. `crates/kernels/src/cuda/ptx/digests.txt`: the digests of what 2 and 3 are made from, and of themselves.
 //!
 //! Before that, kernels are checked for copies of host constants. Only products whose digests differ are made again. With `--check` nothing is
 //! written, no compiler is needed, and stale files are listed; `--check --recompile` also makes everything again and compares it byte by byte.
@@ -26,10 +26,10 @@ use std::thread;
 
 use crate::{Outcome, Verdict};
 
-/// The folder of kernels and headers; all paths in this module are relative to the repository.
-const SOURCES: &str = "crates/render/src";
-const LAYOUT: &str = "crates/render/src/cuda/layout.cuh";
-const PTX: &str = "crates/render/src/cuda/ptx";
+/// The folders of kernels and headers, in which includes are searched for; all paths in this module are relative to the repository.
+const SOURCES: [&str; 3] = ["crates/kernels/src", "crates/trace/src", "crates/render/src"];
+const LAYOUT: &str = "crates/kernels/src/cuda/layout.cuh";
+const PTX: &str = "crates/kernels/src/cuda/ptx";
 const REPORT: &str = "docs/kernels.md";
 const TOOLS: &str = "target/cuda-tools";
 
@@ -43,7 +43,9 @@ struct Product {
 struct Source {
     /// Name of its module.
     module: String,
-    /// Relative to [`SOURCES`].
+    /// The folder among [`SOURCES`] that has it.
+    folder: PathBuf,
+    /// Relative to `folder`.
     path: PathBuf,
 }
 
@@ -71,7 +73,7 @@ pub(crate) enum Task {
 pub(crate) fn run(root: &Path, task: Task) -> Outcome {
     // Relative paths, so that generated files do not depend on the location of the repository.
     std::env::set_current_dir(root)?;
-    let copies = copies::find(Path::new(SOURCES))?;
+    let copies = copies::find(&SOURCES.map(Path::new))?;
     if !copies.is_empty() {
         return Ok(Verdict::Failed(copies));
     }
@@ -79,7 +81,7 @@ pub(crate) fn run(root: &Path, task: Task) -> Outcome {
     if layout.differs() && task == Task::Write {
         layout.write()?;
     }
-    let sources = kernel_files(Path::new(SOURCES))?;
+    let sources = kernel_files()?;
     let done = format!("{} kernel files; header, PTX and report up to date", sources.len());
     let known = digest::committed();
     let stale = match task {
@@ -104,7 +106,7 @@ pub(crate) fn run(root: &Path, task: Task) -> Outcome {
 /// Prints the PTX of a module.
 pub(crate) fn print(root: &Path, module: &str) -> Result<String, Box<dyn Error>> {
     std::env::set_current_dir(root)?;
-    let sources = kernel_files(Path::new(SOURCES))?;
+    let sources = kernel_files()?;
     let source = sources.iter().find(|source| source.module == module);
     let source = source.ok_or_else(|| format!("there is no module {module}"))?;
     // The line ends where it is printed.
@@ -149,7 +151,7 @@ fn current(sources: &[Source]) -> Result<BTreeMap<String, digest::Digests>, Box<
     let mut of_modules = vec![versions.ptxas.as_bytes().to_vec(), report::FORM.as_bytes().to_vec()];
     for source in sources {
         let ptx = read(&ptx_path(&source.module));
-        let inputs = digest::of_inputs(Path::new(SOURCES), &source.path, &settings)?;
+        let inputs = digest::of_inputs(&SOURCES.map(Path::new), &source.path, &settings)?;
         all.insert(source.module.clone(), digest::Digests { inputs, product: digest::of([&ptx[..]]) });
         of_modules.extend([source.module.clone().into_bytes(), ptx]);
     }
@@ -222,14 +224,16 @@ fn left_over(sources: &[Source]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     Ok(found)
 }
 
-/// The kernel files under `folder`, in order of module: `kernel.cu` is named after its folder, any other file after itself.
-fn kernel_files(folder: &Path) -> Result<Vec<Source>, Box<dyn Error>> {
+/// The kernel files, in order of module: `kernel.cu` is named after its folder, any other file after itself.
+fn kernel_files() -> Result<Vec<Source>, Box<dyn Error>> {
     let mut sources = Vec::new();
-    for path in sources_under(folder, &["cu"])? {
-        let named_by = if path.ends_with("kernel.cu") { path.parent() } else { Some(path.as_path()) };
-        let module = named_by.and_then(Path::file_stem).and_then(OsStr::to_str);
-        let module = module.ok_or_else(|| format!("{} has no module name", path.display()))?.to_owned();
-        sources.push(Source { module, path: path.strip_prefix(folder)?.to_owned() });
+    for folder in SOURCES {
+        for path in sources_under(Path::new(folder), &["cu"])? {
+            let named_by = if path.ends_with("kernel.cu") { path.parent() } else { Some(path.as_path()) };
+            let module = named_by.and_then(Path::file_stem).and_then(OsStr::to_str);
+            let module = module.ok_or_else(|| format!("{} has no module name", path.display()))?.to_owned();
+            sources.push(Source { module, folder: folder.into(), path: path.strip_prefix(folder)?.to_owned() });
+        }
     }
     sources.sort_by(|a, b| a.module.cmp(&b.module));
     Ok(sources)

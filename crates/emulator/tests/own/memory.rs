@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use lightmesh_emulator::Emulator;
-use lightmesh_render::RenderError;
-use lightmesh_render::cuda::{Fault, Kernel, Pool, Runtime};
+use lightmesh_render::cuda::{DeviceError, Fault, Kernel, Pool, Runtime};
 
 use crate::Bench;
 
@@ -40,7 +39,7 @@ fn memory_can_be_used_up_and_is_given_back() {
     let pool = Pool::new(Arc::new(Emulator::with_memory(1000)));
     assert_eq!(pool.runtime().free_memory(), Some(1000));
     let first = pool.room::<u8>("first", 600).unwrap();
-    let Err(RenderError::DeviceMemory { buffer, needed, free, .. }) = pool.room::<u8>("second", 401) else {
+    let Err(DeviceError::Memory { buffer, needed, free, .. }) = pool.room::<u8>("second", 401) else {
         panic!("401 bytes do not fit")
     };
     assert_eq!((buffer, needed, free), ("second", 401, Some(400)));

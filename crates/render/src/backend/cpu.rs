@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use glam::Vec3;
+use lightmesh_trace::accel::Hit;
 
 use super::table::{stage_table, stages_on_cpu};
 use super::{Backend, Probed, SeenOf, WaveOf};
-use crate::accel::Hit;
 use crate::antialiasing::Antialiasing;
 use crate::bands;
 use crate::cache::{HostTable, Kept};

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::Rays;
 use lightmesh_memory::Budget;
@@ -15,7 +16,6 @@ use super::{
 use crate::antialiasing::Antialiasing;
 use crate::bands;
 use crate::cache::{DeviceTable, Kept};
-use crate::cuda::Runtime;
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;

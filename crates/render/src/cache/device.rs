@@ -2,6 +2,7 @@
 //! until it takes its part of the memory. Then the bricks that were used last are taken to the host and make a new one.
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::Out;
 use lightmesh_layout::constants::POINT_BITS;
 use lightmesh_layout::mesh::{BrickTable, KeptBy, LitBy};
@@ -10,7 +11,6 @@ use rayon::prelude::*;
 
 use super::stored::{POINTS, Readable, ReadableAnswers, Stored, StoredAnswers, StoredColumn, bytes_of_brick};
 use super::{Allowance, Noticed, Seen, Table};
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gathered::cuda::DeviceSurfaceLight;
 use crate::gathered::saved::SavedLight;
@@ -339,7 +339,7 @@ impl<R: Runtime> DeviceTable<R> {
 }
 
 /// A launch of one thread per slot.
-fn slots(capacity: usize) -> crate::cuda::Launch {
+fn slots(capacity: usize) -> lightmesh_kernels::Launch {
     blocks_for(&(0..capacity.div_ceil(BLOCK as usize) as u64), BLOCK)
 }
 

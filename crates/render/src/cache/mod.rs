@@ -18,6 +18,7 @@ pub(crate) mod stored;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 
+use lightmesh_kernels::Driver;
 use lightmesh_memory::Budget;
 
 pub(crate) use content::{Content, Places, SavedGathered, Section};
@@ -28,7 +29,6 @@ pub(crate) use noticed::Noticed;
 pub(crate) use seen::Seen;
 use stored::Stored;
 
-use crate::cuda::Driver;
 use crate::error::RenderError;
 use crate::gathered::Sources;
 use crate::gathered::saved::SavedLight;

@@ -6,8 +6,8 @@ use glam::Vec3;
 use lightmesh_layout::constants::{
     DIRECTION_SHIFT, FADE_SHIFT, MOST_DIRECTIONS, PARTS_OF_FADE, THROUGHS_MASK, THROUGHS_SHIFT,
 };
+use lightmesh_trace::accel::{Hit, Ray, Triangle};
 
-use crate::accel::{Hit, Ray, Triangle};
 use crate::antialiasing::Antialiasing;
 use crate::footprint::Cone;
 use crate::prepared::PreparedScene;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::accel::Hit;
+use lightmesh_trace::accel::Hit;
 
 /// What some samples of each pixel of some rows see.
 #[derive(Clone, Debug)]

@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use lightmesh_scene::Lights;
+use lightmesh_trace::accel::Hit;
 
 use super::cells::CellGroups;
 use super::lights::LightGroup;
 use super::lit::Lit;
 use super::masks::Masks;
 use super::rays::{RayList, surface_point_of};
-use crate::accel::Hit;
 use crate::job::{Job, Sampling};
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::prepared::PreparedScene;

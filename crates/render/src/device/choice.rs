@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use lightmesh_kernels::{DeviceError, Driver, Library, open_cuda};
+
 use super::Device;
 use super::report::{cpu, ready};
-use crate::cuda::{Driver, Library, open_cuda};
 use crate::error::RenderError;
 
 /// The result of choosing a [`Device`].
@@ -38,15 +39,15 @@ impl Choice {
     pub fn of(device: Device) -> Result<Choice, RenderError> {
         match device {
             Device::Cpu => Ok(Choice::cpu()),
-            Device::Cuda(number) => open_cuda(number).map(Choice::cuda),
+            Device::Cuda(number) => Ok(Choice::cuda(open_cuda(number)?)),
             Device::Auto => Ok(open_cuda(None).map_or_else(Choice::instead_of_cuda, Choice::cuda)),
         }
     }
 
-    fn instead_of_cuda(error: RenderError) -> Choice {
+    fn instead_of_cuda(error: DeviceError) -> Choice {
         let (why, is_ordinary) = match (Library::open(), error) {
             (Err(why), _) => (why.explained(), why.is_ordinary()),
-            (Ok(_), RenderError::Device { reason, .. }) => (reason, false),
+            (Ok(_), DeviceError::Unusable { reason, .. }) => (reason, false),
             (Ok(_), other) => (other.to_string(), false),
         };
         Choice { no_cuda: Some(why), misses_cuda: !is_ordinary, ..Choice::cpu() }

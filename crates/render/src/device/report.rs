@@ -1,9 +1,9 @@
 //! The devices of this machine, and why some of them cannot be used.
 
+use lightmesh_kernels::{Driver, Gpu, Library, Runtime, Version, capability, visible_devices};
 use serde::Serialize;
 
 use super::Device;
-use crate::cuda::{Driver, Gpu, Library, Runtime, Version, capability, visible_devices};
 
 /// A device that was detected or searched for, and whether it can be used.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]

@@ -13,9 +13,9 @@ use lightmesh_layout::constants::{
     SURFACE_KINDS,
 };
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::{Hit, Ray, Region, Triangle};
 use rayon::prelude::*;
 
-use crate::accel::{Hit, Ray, Region, Triangle};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 

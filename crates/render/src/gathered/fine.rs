@@ -9,6 +9,7 @@
 
 use glam::Vec3;
 use lightmesh_layout::constants::{CLOSER, COARSER, CROWDED, CROWDED_AGAIN, HOPELESS, NEAR_REACH};
+use lightmesh_trace::accel::Hit;
 use rayon::prelude::*;
 
 use super::bounce::Bounce;
@@ -20,7 +21,6 @@ use super::light::Light;
 use super::lookup::{Link, Links, Place};
 use super::rays::Cast;
 use super::scene::Scene;
-use crate::accel::Hit;
 
 /// What coarse sites know.
 pub(super) struct Coarse<'a> {

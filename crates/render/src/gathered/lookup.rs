@@ -8,12 +8,12 @@ use lightmesh_layout::constants::{
     SITE_THICKNESS,
 };
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::{Hit, Ray};
 use rayon::prelude::*;
 
 use super::cells::{Asked, CellKey, Cells, cell_at, corner_of, key_of, size_of_level};
 use super::directions::basis;
 use super::scene::Scene;
-use crate::accel::{Hit, Ray};
 use crate::surface::{SurfacePoint, long_segment};
 
 /// Places per task.

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use lightmesh_layout::constants::{BOUNCE_SIZE, BRIGHT, CHOSEN_LIGHTS, LAST_DIGIT, SKY_CONE};
 use lightmesh_scene::{Light, LightKind};
+use lightmesh_trace::accel::{Hit, Ray};
 use rayon::prelude::*;
 
 use super::cells::{Kind, Site, kind_of, level_of, outward};
@@ -11,7 +12,6 @@ use super::fan::Fan;
 use super::guide::Guides;
 use super::lookup::Place;
 use super::scene::Scene;
-use crate::accel::{Hit, Ray};
 use crate::counters::Tally;
 use crate::data::lights::LightGroup;
 use crate::data::rays::RayList;

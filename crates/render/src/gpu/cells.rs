@@ -1,8 +1,7 @@
 //! Surface points grouped by cell, on a device.
 
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::mesh::Item;
-
-use crate::cuda::{Buffer, Runtime};
 
 /// The surface points of a wave grouped by cell and split into items: up to 32 surface points of one cell, the work of one
 /// warp.

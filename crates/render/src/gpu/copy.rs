@@ -1,12 +1,12 @@
 //! Copies within a device's memory, and buffers that grow.
 
 use bytemuck::Pod;
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::constants::BLOCK;
 use lightmesh_layout::stages::Copy;
 use lightmesh_layout::{In, Out};
 
 use super::device::{Cuda, blocks_for};
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 
 const COPY: Kernel = Kernel { module: "copy", name: "copy_words" };

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
 use bytemuck::Pod;
+use lightmesh_kernels::{Buffer, Kernel, Launch, Pool, Runtime};
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::counters::Counters;
 use lightmesh_layout::geometry::Tally;
@@ -11,7 +12,6 @@ use lightmesh_scene::Environment;
 
 use super::held::{DeviceEnvironment, DeviceGeometry, DeviceTemplate, DeviceTextures, Resident};
 use super::rates::Rates;
-use crate::cuda::{Buffer, Kernel, Launch, Pool, Runtime};
 use crate::error::RenderError;
 use crate::job::Job;
 use crate::prepared::PreparedGeometry;
@@ -74,12 +74,12 @@ impl<R: Runtime> Cuda<R> {
     /// Launches a kernel once.
     pub(crate) fn launch<A: Pod>(&self, kernel: Kernel, launch: Launch, arguments: &A) -> Result<(), RenderError> {
         let result = self.pool.runtime().launch(kernel, launch, bytemuck::bytes_of(arguments));
-        result.map_err(|fault| self.pool.fault(fault))
+        result.map_err(|fault| self.pool.fault(fault).into())
     }
 
     /// A point in the device's queue.
     pub(super) fn mark(&self) -> Result<R::Mark, RenderError> {
-        self.pool.runtime().mark().map_err(|fault| self.pool.fault(fault))
+        self.pool.runtime().mark().map_err(|fault| self.pool.fault(fault).into())
     }
 
     /// The counters that kernels add to.
@@ -100,7 +100,7 @@ impl<R: Runtime> Cuda<R> {
     pub(crate) fn begin_band(&self) -> Result<(), RenderError> {
         locked(&self.spans).clear();
         self.rates.forget_pending();
-        self.counters()?.clear()
+        Ok(self.counters()?.clear()?)
     }
 
     /// Runs a stage between two marks of the device's clock; the time is read when the band is finished.

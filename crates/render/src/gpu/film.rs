@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use lightmesh_image::Matte;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::Out;
 use lightmesh_layout::geometry::Vec3;
 use lightmesh_layout::stages::{PixelSamples, Shade};
@@ -10,7 +11,6 @@ use lightmesh_scene::Geometry;
 
 use super::device::Cuda;
 use super::rays::DeviceRays;
-use crate::cuda::{Buffer, Runtime};
 use crate::data::mattes::{slots_of, write_ranks};
 use crate::data::picture::{Picture, light_groups_of};
 use crate::error::RenderError;

@@ -2,10 +2,10 @@
 
 use std::sync::{Arc, Weak};
 
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::Structure;
 use lightmesh_layout::scene::{EnvironmentLevel, Scene, Texture};
 
-use crate::cuda::{Buffer, Runtime};
 use crate::prepared::SeeThrough;
 
 /// A template on a device.

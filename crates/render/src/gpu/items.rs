@@ -1,8 +1,7 @@
 //! Surface points in small groups, on a device.
 
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::stages::TileBox;
-
-use crate::cuda::{Buffer, Runtime};
 
 /// The surface points of a wave in items of up to 32 that lie close together, the work of one warp.
 pub struct DeviceItems<R: Runtime> {

@@ -1,12 +1,12 @@
 //! The visibility of lights at light points, on a device.
 
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::Out;
 use lightmesh_layout::mesh::LitBy;
 use lightmesh_scene::Light;
 
 use super::device::Cuda;
 use super::points::DevicePoints;
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 
 /// The visibility of every light at every used light point, on a device.

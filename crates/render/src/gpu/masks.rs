@@ -1,7 +1,8 @@
 //! Masks of formula (2) on a device, transposed.
 
+use lightmesh_kernels::{Buffer, Runtime};
+
 use super::cells::DeviceCells;
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 
 /// The masks of all surface points on a device, transposed: 32 · words words for each item.

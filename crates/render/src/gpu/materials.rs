@@ -4,14 +4,14 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use glam::Vec2;
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::In;
 use lightmesh_layout::geometry::{Coverage, Mask, Vec3};
 use lightmesh_layout::scene::{FacetShare, Material, Scene as Record, Texture, TextureLevel, Uv};
 use lightmesh_scene::{Geometry, Wrap};
+use lightmesh_trace::accel;
 
 use super::scene::{Upload, vec3};
-use crate::accel;
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::shading::facets;
 use crate::shading::tint::{Coefficients, is_tinted};

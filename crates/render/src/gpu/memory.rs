@@ -5,11 +5,11 @@
 //! with half of its rows (`passes.rs`). At one row the error names buffer, size and free memory. Bands are bit-identical to the whole
 //! image. If memory is short although the plan fits, cached light points are dropped first (`backend/run.rs`).
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Vec3};
 use lightmesh_layout::mesh::Item;
 
 use super::device::Cuda;
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gathered::cuda;
 use crate::plan::Plan;

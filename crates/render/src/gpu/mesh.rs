@@ -1,6 +1,7 @@
 //! The records that describe the light mesh and sampling to kernels.
 
 use glam::IVec3;
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::constants::MOST_REACH;
 use lightmesh_layout::mesh::{LightMesh as Record, TemplateRow};
 use lightmesh_layout::scene::Sampling;
@@ -8,7 +9,6 @@ use lightmesh_scene::Weight;
 
 use super::device::Cuda;
 use super::held::DeviceTemplate;
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::light_mesh::LightMesh;
 use crate::sync::locked;
@@ -54,7 +54,7 @@ impl<R: Runtime> Cuda<R> {
 
     fn set_lines(&self, module: &'static str, lines: &[TemplateRow]) -> Result<(), RenderError> {
         let result = self.pool.runtime().constant(module, "template_rows", bytemuck::cast_slice(lines));
-        result.map_err(|fault| self.pool.fault(fault))
+        result.map_err(|fault| self.pool.fault(fault).into())
     }
 }
 

@@ -9,10 +9,10 @@
 //!
 //! What that costs is in `bench/kernels/README.md`.
 
+use lightmesh_kernels::{Kernel, Runtime};
 use lightmesh_layout::Structure;
 
 use super::DeviceScene;
-use crate::cuda::{Kernel, Runtime};
 
 /// The modules that exist without and with tests of what is cut out.
 const DOUBLED: &[&str] = &["occluder_lists", "pixel_samples", "primary_rays", "short_tests"];

@@ -8,9 +8,10 @@
 
 use std::ops::Range;
 
+use lightmesh_kernels::{Kernel, Runtime};
+
 use super::device::Cuda;
 use super::rates::{Timing, Work};
-use crate::cuda::{Kernel, Runtime};
 use crate::error::RenderError;
 use crate::job::Job;
 

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::mesh::{BrickTable, UsedPoints};
 
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::light_mesh::BrickKey;
 
@@ -45,6 +45,6 @@ impl<R: Runtime> DevicePoints<R> {
 
     /// Reads the rank of the first used point of each slot.
     pub fn read_ranks(&self) -> Result<Vec<u32>, RenderError> {
-        self.rank.read()
+        Ok(self.rank.read()?)
     }
 }

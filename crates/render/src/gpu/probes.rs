@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::geometry::{Hit, ListedRay, Rays, Triangle};
 
 use super::device::Cuda;
 use super::rays::{DeviceHits, DeviceRays, DeviceVisibility};
 use super::scene::{DeviceScene, vec3};
 use crate::backend::Probed;
-use crate::cuda::Runtime;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::probes::Probes;

@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Mutex;
 
+use lightmesh_kernels::{Kernel, Pool, Runtime};
 use lightmesh_layout::constants::BLOCK;
 
-use crate::cuda::{Kernel, Pool, Runtime};
 use crate::error::RenderError;
 use crate::sync::locked;
 

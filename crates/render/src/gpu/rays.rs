@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::Out;
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays, Vec3};
+use lightmesh_trace::accel;
 
 use super::device::Cuda;
 use super::samples::DeviceSampled;
 use super::scene::DeviceScene;
-use crate::accel;
-use crate::cuda::{Buffer, Runtime};
 use crate::data::wave::Wave;
 use crate::error::RenderError;
 
@@ -96,7 +96,7 @@ impl<R: Runtime> DeviceVisibility<R> {
     /// # Errors
     /// [`RenderError::DeviceFault`] if the device fails.
     pub fn read(&self) -> Result<Vec<f32>, RenderError> {
-        self.share.read()
+        Ok(self.share.read()?)
     }
 }
 

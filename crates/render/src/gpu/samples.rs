@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::geometry::Hit;
 use lightmesh_layout::stages::PixelSamples;
-
-use crate::cuda::{Buffer, Runtime};
 
 /// What some samples of each pixel of some rows see.
 pub struct DeviceSamples<R: Runtime> {

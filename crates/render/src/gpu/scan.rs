@@ -1,10 +1,10 @@
 //! Exclusive prefix sums on the device.
 
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::constants::{BLOCK, VALUES_OF_THREAD};
 use lightmesh_layout::stages::Scan;
 
 use super::device::{Cuda, blocks_for};
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 
 /// Number of values that one block scans.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::constants::{
     BVH_STACK, GRID_FRAME_WORDS, MOST_HELD, RECENT_TRIANGLES, STACK_OF_INSTANCES, STACK_OF_ROUNDS, STACK_PER_LEVEL,
 };
@@ -12,11 +13,10 @@ use lightmesh_layout::geometry::{
 use lightmesh_layout::scene::{self as layout, EnvironmentLevel, Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
 use lightmesh_scene::{Environment, Falloff, LightKind};
+use lightmesh_trace::accel::{self, Form};
 
 use super::device::Cuda;
 use super::held::{Buffers, DeviceEnvironment, DeviceGeometry, DeviceTextures};
-use crate::accel::{self, Form};
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::job::Job;
 use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
@@ -219,7 +219,7 @@ impl<R: Runtime> Cuda<R> {
                 for lower in of.levels() {
                     levels.push(level(lower.size, &lower.texels)?);
                 }
-                self.pool.upload("levels of the environment", &levels)
+                Ok(self.pool.upload("levels of the environment", &levels)?)
             };
             let seen = all(original)?;
             let gathered = (!std::ptr::eq(original.gathered(), &**original)).then(|| all(original.gathered()));

@@ -5,10 +5,10 @@
 //! plain ray tracing.
 
 use glam::Vec3;
+use lightmesh_trace::accel::{Hit, Ray};
 use rayon::prelude::*;
 
 use super::lattice::Lattice;
-use crate::accel::{Hit, Ray};
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
 use crate::view::View;

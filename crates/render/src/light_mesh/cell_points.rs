@@ -3,9 +3,9 @@
 use fearless_simd::{f32x8, mask32x8, prelude::*};
 use glam::{IVec3, Vec3};
 use lightmesh_scene::Weight;
+use lightmesh_trace::simd::{LANES, dot, load, sum_of_lanes};
 
 use super::mesh::LightMesh;
-use crate::simd::{LANES, dot, load, sum_of_lanes};
 
 /// Positions of a cell's template points, one lane per point, padded with points at infinity to whole mask words.
 #[derive(Clone, Debug)]

@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use lightmesh_image::{FrameParts, Layers, SaveError};
+use lightmesh_kernels::{Driver, Runtime};
 use lightmesh_memory::Budget;
 use lightmesh_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -19,7 +20,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::backend::run::Run;
 use crate::backend::{Backend, Cpu, Cuda};
 use crate::cache::{Kept, MeshCache, MeshFileError};
-use crate::cuda::{Driver, Runtime};
 use crate::data::picture::Picture;
 use crate::device::{Choice, Chosen, Device};
 use crate::error::RenderError;
@@ -31,6 +31,7 @@ use crate::prepared::{Preparations, PreparedScene};
 use crate::probes::{GivenPoints, PointVisibility};
 use crate::settings::{Acceleration, Crop, Settings};
 use crate::shading::ids::catchers;
+use crate::shadow::rows::KnownRows;
 use crate::stats::Stats;
 use resolve::Resolved;
 
@@ -97,6 +98,8 @@ pub struct Renderer {
     pool: ThreadPool,
     engine: Engine,
     preparations: Preparations,
+    /// Where the samples of lights lie.
+    rows: Arc<KnownRows>,
 }
 
 /// The backend in use.
@@ -139,7 +142,7 @@ impl Renderer {
             Chosen::Cpu => Engine::Cpu,
             Chosen::Cuda(driver) => Engine::Cuda(Arc::clone(&driver), Box::new(Mutex::new(Cuda::new(driver)))),
         };
-        Ok(Renderer { pool, engine, preparations: Preparations::default() })
+        Ok(Renderer { pool, engine, preparations: Preparations::default(), rows: Arc::default() })
     }
 
     /// Renders one image of `scene`.
@@ -229,10 +232,10 @@ impl Renderer {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         self.pool.install(|| match &self.engine {
-            Engine::Cpu => render_on(&Cpu, scene, settings, observer),
+            Engine::Cpu => picture_on(&Cpu, None, &self.rows, scene, settings, observer),
             Engine::Cuda(_, cuda) => {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
-                render_on(&*cuda, scene, settings, observer)
+                picture_on(&*cuda, None, &self.rows, scene, settings, observer)
             }
         })
     }
@@ -255,10 +258,10 @@ impl Renderer {
     ) -> Result<PointVisibility, RenderError> {
         let points = GivenPoints::new(scene, points, normals)?;
         self.pool.install(|| match &self.engine {
-            Engine::Cpu => visibility_on(&Cpu, &points, settings, observer),
+            Engine::Cpu => points_on(&Cpu, &self.rows, &points, settings, observer),
             Engine::Cuda(_, cuda) => {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
-                visibility_on(&*cuda, &points, settings, observer)
+                points_on(&*cuda, &self.rows, &points, settings, observer)
             }
         })
     }
@@ -281,11 +284,11 @@ impl Renderer {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         self.pool.install(|| match &self.engine {
-            Engine::Cpu => render_on_with(&Cpu, cache.host(), scene, settings, observer),
+            Engine::Cpu => picture_on(&Cpu, Some(cache.host()), &self.rows, scene, settings, observer),
             Engine::Cuda(_, cuda) => {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 let kept = cache.device(cuda.pool().runtime().id());
-                render_on_with(&*cuda, kept, scene, settings, observer)
+                picture_on(&*cuda, Some(kept), &self.rows, scene, settings, observer)
             }
         })
     }
@@ -301,11 +304,21 @@ pub fn visibility_on<B: Backend>(
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<PointVisibility, RenderError> {
+    points_on(backend, &Arc::default(), points, settings, observer)
+}
+
+fn points_on<B: Backend>(
+    backend: &B,
+    rows: &Arc<KnownRows>,
+    points: &GivenPoints,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<PointVisibility, RenderError> {
     let start = Instant::now();
     let scene = points.scene;
     backend.check_structure(scene.geometry.acceleration())?;
     let resolved = Resolved::at_points(points, settings, observer)?;
-    let job = resolved.job(observer);
+    let job = resolved.job(observer).with_rows(rows);
     let run = Run::new(backend, &job, None);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, resolved.plan.memory_limit))?;
     let Resolved { technique, plan, .. } = &resolved;
@@ -324,7 +337,7 @@ pub fn render_on<B: Backend>(
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<Frame, RenderError> {
-    picture_on(backend, None, scene, settings, observer)
+    picture_on(backend, None, &Arc::default(), scene, settings, observer)
 }
 
 /// The same with what is kept from image to image on this backend only.
@@ -338,12 +351,13 @@ pub fn render_on_with<B: Backend>(
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<Frame, RenderError> {
-    picture_on(backend, Some(kept), scene, settings, observer)
+    picture_on(backend, Some(kept), &Arc::default(), scene, settings, observer)
 }
 
 fn picture_on<B: Backend>(
     backend: &B,
     mut kept: Option<&mut Kept<B::Table>>,
+    rows: &Arc<KnownRows>,
     scene: &PreparedScene,
     settings: &Settings,
     observer: &dyn Observer,
@@ -367,12 +381,12 @@ fn picture_on<B: Backend>(
         plan.left = Budget::new(plan.memory_limit).left();
         backend.check_host_memory(&plan)?;
     }
-    let job = resolved.job(observer);
+    let job = resolved.job(observer).with_rows(rows);
     let rows = 0..plan.size[1];
     let mut picture = Picture::planned(&plan, [rows.clone(), rows]);
     let run = Run::new(backend, &job, kept);
     let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
-    if technique.template() > 0 {
+    if settings.has_light_points() {
         plan.reserved = run.begin_kept(backend.left(&plan));
         if backend.rows_at_once(&on_device, &plan).is_err() {
             // All of it is needed for the image.

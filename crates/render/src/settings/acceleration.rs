@@ -15,7 +15,7 @@ pub enum Acceleration {
     Auto,
     /// The regular grid of the thesis, with the given number of cells along each axis, or a chosen one.
     Grid(Option<[u32; 3]>),
-    /// The regular grid stored in a file by [`Grid::save`](crate::accel::Grid::save).
+    /// The regular grid stored in a file by [`Grid::save`](lightmesh_trace::accel::Grid::save).
     GridFile(PathBuf),
     /// A wide BVH.
     Bvh,

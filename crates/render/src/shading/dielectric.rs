@@ -11,8 +11,8 @@
 use glam::Vec3;
 use lightmesh_layout::constants::{EXP_2, EXP_3, EXP_4, EXP_5, EXP_6, LARGEST_EXPONENT, LN_2_HIGH, LN_2_LOW, LOG2_E};
 use lightmesh_scene::Dielectric;
+use lightmesh_trace::accel::{Hit, Ray, Triangle};
 
-use crate::accel::{Hit, Ray, Triangle};
 use crate::prepared::PreparedScene;
 use crate::surface::{SurfacePoint, shading_normal};
 

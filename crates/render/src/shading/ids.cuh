@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/instanced.cuh"
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 
 // The number of a triangle's object: that of its instance, or of the last run that begins at it or before.
 DEVICE unsigned object_of(const Scene &scene, unsigned triangle) {

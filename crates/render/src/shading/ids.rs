@@ -1,8 +1,8 @@
 //! Numbers of the objects and materials that rays see, from 1; 0 is nothing. Twin: `ids.cuh`.
 
 use lightmesh_scene::Instance;
+use lightmesh_trace::accel::Hit;
 
-use crate::accel::Hit;
 use crate::prepared::PreparedScene;
 
 /// The number of what a ray sees: its object, and its material.

@@ -29,8 +29,8 @@ use lightmesh_layout::constants::{
 };
 use lightmesh_layout::scene;
 use lightmesh_scene::{Facets, Falloff, Geometry, Light, LightKind, Lights, Material};
+use lightmesh_trace::accel::Hit;
 
-use crate::accel::Hit;
 use crate::data::wave::HostWave;
 use crate::footprint::{Cone, curvature};
 use crate::sampling::{Pattern, light_center, light_point};

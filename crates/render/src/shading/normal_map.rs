@@ -19,9 +19,9 @@ use lightmesh_layout::constants::{
     LEAST_MIRRORED_COSINE, LEAST_SMOOTH_SQUARE, LOW_LIGHT, NORMAL_CODE_ONE, NORMAL_CODE_ZERO,
 };
 use lightmesh_scene::{Geometry, Material};
+use lightmesh_trace::accel::{Hit, Ray};
 
 use super::texel::{texel_at, uvs_of};
-use crate::accel::{Hit, Ray};
 use crate::footprint::Cone;
 use crate::prepared::PreparedScene;
 use crate::surface::{SurfacePoint, shading_normal, smooth_at};

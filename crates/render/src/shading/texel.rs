@@ -1,8 +1,8 @@
 //! What the sample of a pixel sees of an image of a material: the mean over its [footprint](crate::footprint). Twin: `texel.cuh`.
 
 use glam::{Vec2, Vec3};
+use lightmesh_trace::accel::{Hit, Ray};
 
-use crate::accel::{Hit, Ray};
 use crate::footprint::{self, Cone};
 use crate::prepared::PreparedScene;
 use crate::textures::{Image, filtered};

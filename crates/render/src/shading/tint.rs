@@ -11,11 +11,11 @@
 
 use glam::Vec3;
 use lightmesh_scene::{Dielectric, Geometry, Material, Mesh};
+use lightmesh_trace::accel::{Hit, Ray};
 
 use super::dielectric::{Boundary, left_straight_on};
 use super::normal_map::{mirroring, normal_at};
 use super::texel::texel_at;
-use crate::accel::{Hit, Ray};
 use crate::footprint::Cone;
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;

@@ -8,10 +8,10 @@ use fearless_simd::prelude::*;
 use glam::Vec3;
 use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
 use lightmesh_layout::scene::SampleRows;
+use lightmesh_trace::accel::{Coverage, Triangle, Triangles};
+use lightmesh_trace::simd::{Axes, LANES};
 
 use super::sight::Sight;
-use crate::accel::{Coverage, Triangle, Triangles};
-use crate::simd::{Axes, LANES};
 
 /// What is cut out of the triangles of eight lanes.
 #[derive(Clone, Copy)]

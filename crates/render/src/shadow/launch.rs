@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::Out;
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
@@ -10,7 +11,6 @@ use lightmesh_layout::stages::{Shadows, Weighed};
 
 use super::Aim;
 use super::rows::Rows;
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{Cuda, PerStructure, Work, sampling, warps_for};
@@ -24,8 +24,7 @@ pub(crate) struct SampleSets {
 }
 
 impl SampleSets {
-    pub(crate) fn new(aim: &Aim) -> SampleSets {
-        let rows = Rows::of(aim);
+    pub(crate) fn new(rows: Arc<Rows>) -> SampleSets {
         let count = rows.disc.len().max(rows.rectangle.len()) as u32;
         SampleSets { rows, count }
     }
@@ -100,7 +99,7 @@ pub(crate) fn test_samples<R: Runtime>(
     let scene = wave.scene;
     let dark = DeviceVisibility::dark(cuda, wave.rays.len(), wave.group())?;
     let visibility = DeviceVisibility { weighed: true, ..dark };
-    let sets = SampleSets::new(aim);
+    let sets = SampleSets::new(wave.rows(aim));
     // What is seen of near lights by several sets.
     let lights = &scene.host.scene.lights;
     let sums = match sets.count > 1 && lights.iter().any(may_be_near) {

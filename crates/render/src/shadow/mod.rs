@@ -10,16 +10,19 @@ pub(crate) mod sight;
 pub(crate) mod terminator;
 pub(crate) mod weights;
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use lightmesh_layout::constants::HORIZON_SAMPLES;
 use lightmesh_scene::{Light, LightKind};
+use lightmesh_trace::accel::Ray;
 
-use crate::accel::Ray;
 use crate::counters::Tally;
 use crate::data::wave::{HostWave, Wave};
 use crate::job::Sampling;
 use crate::sampling::{Pattern, before_body, disk_radius, light_center, light_point};
 use crate::surface::{SurfacePoint, long_segment};
+use rows::Rows;
 
 /// Maximum number of segments passed on at once: they stay in a core's cache.
 pub(crate) const SEGMENTS: usize = 4 * 1024;
@@ -37,6 +40,15 @@ impl<Scene, Rays, Hits> Wave<'_, Scene, Rays, Hits> {
     /// Shadow rays to the samples of each light that a ray of this wave takes.
     pub(crate) fn aim(&self) -> Aim {
         Aim::Extent(self.sampling())
+    }
+
+    /// The rows of the samples that rays are aimed at.
+    pub(crate) fn rows(&self, aim: &Aim) -> Arc<Rows> {
+        let samples = match aim {
+            Aim::Middle => 1,
+            Aim::Extent(sampling) => sampling.samples,
+        };
+        self.job.rows.of(samples)
     }
 }
 

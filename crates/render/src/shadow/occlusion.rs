@@ -16,7 +16,7 @@
 //!   changes its sign if b and c change places. So triangles that share an edge have exactly the same bound there: no sample
 //!   slips through between them.
 //! * A triangle with no corner above the tangent plane hides nothing, nor one whose plane contains P.
-//! * A triangle that is [cut out](crate::accel::coverage) hides those of these samples whose ray meets a part of it that is there.
+//! * A triangle that is [cut out](lightmesh_trace::accel::coverage) hides those of these samples whose ray meets a part of it that is there.
 //! * Products are fused into sums ([`fused_dot`]): the results are the same wherever they are evaluated, with half the instructions.
 //!
 //! Lanes are surface points, triangles, or both: the functions do not care.
@@ -26,11 +26,11 @@ use fearless_simd::{f32x8, i32x8, mask32x8, u32x8};
 use glam::Vec3;
 use lightmesh_layout::constants::{BEYOND, LEAST_SLOPE, MOST_ROWS, MOST_WORDS};
 use lightmesh_layout::scene::SampleRows;
+use lightmesh_trace::accel::Triangles;
+use lightmesh_trace::simd::{Axes, LANES, difference, fused_cross, fused_dot, splat, sum};
 
 use super::cuts::{Cuts, Lines, by_lane, keep_stopped, stopped_centers};
 use super::sight::Sight;
-use crate::accel::Triangles;
-use crate::simd::{Axes, LANES, difference, fused_cross, fused_dot, splat, sum};
 use crate::surface::SurfacePoint;
 
 /// Bits of samples, by word, in each lane.

@@ -20,7 +20,6 @@ use bytemuck::Zeroable;
 use lightmesh_layout::constants::{MOST_OF_ROW, MOST_ROWS, MOST_WORDS, SHIFTS};
 use lightmesh_layout::scene::SampleRows;
 
-use super::Aim;
 use crate::sync::locked;
 
 const ROWS: usize = MOST_ROWS as usize;
@@ -33,8 +32,13 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Numbers of samples whose rows are kept: an image needs up to three, with panes up to eight, and finding them takes as long as a wave of rays in
 /// a small image.
 pub const MOST_KNOWN: usize = 8;
-/// The rows that were found last.
-pub static KNOWN: Mutex<Vec<(u32, Arc<Rows>)>> = Mutex::new(Vec::new());
+
+/// The rows that were found last for the images of one renderer: no other waits for it.
+#[derive(Debug, Default)]
+pub struct KnownRows {
+    /// With their numbers of samples, the latest first.
+    known: Mutex<Vec<(u32, Arc<Rows>)>>,
+}
 
 /// The rows of samples of each shape. Large numbers of samples are split into several sets, to be tested one after another.
 #[derive(Clone, Debug)]
@@ -57,14 +61,10 @@ struct Row {
     leaving: bool,
 }
 
-impl Rows {
-    /// Those of the lights that rays are aimed at.
-    pub fn of(aim: &Aim) -> Arc<Rows> {
-        let samples = match aim {
-            Aim::Middle => 1,
-            Aim::Extent(sampling) => sampling.samples,
-        };
-        let mut known = locked(&KNOWN);
+impl KnownRows {
+    /// The rows of `samples` samples, at least 1.
+    pub fn of(&self, samples: u32) -> Arc<Rows> {
+        let mut known = locked(&self.known);
         if let Some((_, rows)) = known.iter().find(|(number, _)| *number == samples) {
             return Arc::clone(rows);
         }
@@ -73,7 +73,9 @@ impl Rows {
         known.insert(0, (samples, Arc::clone(&rows)));
         rows
     }
+}
 
+impl Rows {
     /// `samples` samples, at least 1.
     pub fn new(samples: u32) -> Rows {
         Rows { disc: disc(samples), rectangle: rectangle(samples) }

@@ -7,9 +7,9 @@ use fearless_simd::Simd;
 use glam::Vec3;
 use lightmesh_layout::constants::{BEYOND, LEAST_SLOPE, SHADOW_MARGIN};
 use lightmesh_layout::scene::SampleRows;
+use lightmesh_trace::accel::{Bvh, Coverage, Triangle, Visitor};
 
 use super::sight::Sight;
-use crate::accel::{Bvh, Coverage, Triangle, Visitor};
 use crate::surface::SurfacePoint;
 
 /// By how much a sample must miss a triangle's edge to need no exact test, 2^-18 of the largest product: more than both are rounded.
@@ -201,13 +201,13 @@ impl RowBounds {
     }
 }
 
-/// As that of [eight lanes](crate::simd::fused_dot).
+/// As that of [eight lanes](lightmesh_trace::simd::fused_dot).
 #[inline(always)]
 fn fused_dot(a: Vec3, b: Vec3) -> f32 {
     a.z.mul_add(b.z, a.y.mul_add(b.y, a.x * b.x))
 }
 
-/// As that of [eight lanes](crate::simd::fused_cross).
+/// As that of [eight lanes](lightmesh_trace::simd::fused_cross).
 #[inline(always)]
 fn fused_cross(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(a.y.mul_add(b.z, -(a.z * b.y)), a.z.mul_add(b.x, -(a.x * b.z)), a.x.mul_add(b.y, -(a.y * b.x)))

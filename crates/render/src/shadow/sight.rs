@@ -14,15 +14,15 @@ use glam::Vec3;
 use lightmesh_layout::constants::{ASIDE_OF_BODY, GAMMA_32, GROWN, SHADOW_MARGIN, SHIFTS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::{Bounds, Light, LightKind};
+use lightmesh_trace::accel::Region;
+use lightmesh_trace::simd::{Axes, difference, dot, scaled, splat};
 
 use super::Aim;
 use super::rows::Rows;
 use super::terminator::ShadowPoint;
-use crate::accel::Region;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
 use crate::sampling::{body, covered_by_body, disk_radius, light_center, random_bits, seen_center};
-use crate::simd::{Axes, difference, dot, scaled, splat};
 use crate::surface::SurfacePoint;
 
 /// The form of a light's samples.

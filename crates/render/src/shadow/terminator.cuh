@@ -1,7 +1,7 @@
 // Where shadow rays leave smooth-shaded triangles: twin of terminator.rs.
 #pragma once
 
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "shadow/sight.cuh"
 #include "surface.cuh"
 

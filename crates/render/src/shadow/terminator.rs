@@ -9,9 +9,9 @@
 use glam::Vec3;
 use lightmesh_layout::constants::{LEAST_CURVED_COSINE, LOW_LIGHT, SHAPE_FACTOR};
 use lightmesh_scene::{Light, LightKind, Mesh};
+use lightmesh_trace::accel::{Hit, Triangle};
 
 use super::size;
-use crate::accel::{Hit, Triangle};
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
 use crate::sampling::light_center;

@@ -27,6 +27,8 @@ pub(crate) struct HalfBall {
 }
 
 impl Visible for HalfBall {
+    const HAS_LIGHT_POINTS: bool = true;
+
     fn default_samples(_: &Settings) -> u32 {
         4
     }

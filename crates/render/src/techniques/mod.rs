@@ -60,6 +60,9 @@ fn each_group<B: Backend>(
 
 /// The interface of a technique.
 pub(crate) trait Visible: Sized {
+    /// Whether it interpolates on a lattice of light points: these can be kept from image to image, and their step and radius matter.
+    const HAS_LIGHT_POINTS: bool = false;
+
     /// Default number of samples of a light with a size.
     fn default_samples(settings: &Settings) -> u32;
 
@@ -142,6 +145,14 @@ macro_rules! techniques {
                 settings.samples.unwrap_or(1)
             }
 
+            /// Whether the technique has light points.
+            pub(crate) fn has_light_points(settings: &Settings) -> bool {
+                $(if chosen(settings, Mode::$mode, techniques!(@lookup $lookup)) {
+                    return $file::$name::HAS_LIGHT_POINTS;
+                })*
+                false
+            }
+
             /// Samples of a pixel.
             pub(crate) fn pixel_samples(settings: &Settings) -> u32 {
                 $(if chosen(settings, Mode::$mode, techniques!(@lookup $lookup)) {
@@ -193,6 +204,13 @@ macro_rules! techniques {
 }
 
 technique_table!(techniques);
+
+impl Settings {
+    /// Whether there is a lattice of light points, with a step: of all techniques, only the thesis' has one.
+    pub fn has_light_points(&self) -> bool {
+        Technique::has_light_points(self)
+    }
+}
 
 /// Whether the settings select the technique of `mode` and `lookup`; a mode that looks nothing up ignores it.
 fn chosen(settings: &Settings, mode: Mode, lookup: Option<Lookup>) -> bool {

@@ -13,9 +13,10 @@
 use glam::{Vec2, Vec3};
 use lightmesh_layout::constants::{F32_EXPONENT_BIAS, F32_EXPONENT_STEP, MOST_PROBES};
 use lightmesh_scene::Wrap;
+use lightmesh_trace::textures::neighbours;
 
 use super::levels::unpacked;
-use super::{Image, MipLevels, neighbours};
+use super::{Image, MipLevels};
 
 /// The mean of what the ellipse with these axes around `place` sees, in coordinates of the image: (0, 0) is its upper left corner, (1, 1)
 /// its lower right one. Axes are whole ones, conjugate diameters.

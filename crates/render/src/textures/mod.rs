@@ -11,14 +11,13 @@
 pub(crate) mod encoding;
 pub(crate) mod levels;
 pub(crate) mod lookup;
-pub(crate) mod neighbours;
 
 pub(crate) use encoding::Encoding;
 pub(crate) use levels::{AllLevels, Level, MipLevels};
 pub(crate) use lookup::{between, bilinear, filtered, level_of};
-pub(crate) use neighbours::neighbours;
 
 use lightmesh_scene::{Geometry, Material, Texture, TextureUse};
+use lightmesh_trace::textures::usable;
 
 /// An image of a material that can be looked up.
 #[derive(Clone, Copy, Debug)]
@@ -54,14 +53,4 @@ pub(crate) fn normals_of<'s>(geometry: &'s Geometry, material: &Material) -> Opt
 pub(crate) fn facets_of<'s>(geometry: &'s Geometry, material: &Material) -> Option<Image<'s>> {
     material.faceted()?;
     Image::new(geometry, material.metallic_roughness_texture?, Encoding::Data)
-}
-
-/// A texture that is used like this, if it can be looked up.
-pub(crate) fn usable(geometry: &Geometry, uses: TextureUse) -> Option<(TextureUse, &Texture)> {
-    if geometry.mesh.uvs.is_empty() {
-        return None;
-    }
-    let texture = geometry.textures.get(uses.texture as usize)?;
-    let count = u64::from(texture.size[0]) * u64::from(texture.size[1]);
-    (count > 0 && texture.texels.len() as u64 == count).then_some((uses, texture))
 }

@@ -12,7 +12,7 @@ use crate::expose::Metering;
 use crate::host::{BUILDING, Host, Quiet};
 use crate::manifest::Chosen;
 use crate::mesh_file::Mesh;
-use crate::plan::{Plan, has_light_points};
+use crate::plan::Plan;
 use crate::session::{Context, Session};
 use crate::sun;
 
@@ -109,7 +109,7 @@ impl FrameRenderer {
     pub(crate) fn chosen_across(&self, context: Context) -> Result<Chosen, Error> {
         let Context { renderer, host, .. } = context;
         let settings = &self.plan.settings;
-        let asks_step = has_light_points(settings) && matches!(settings.step, None | Some(Step::Auto));
+        let asks_step = settings.has_light_points() && matches!(settings.step, None | Some(Step::Auto));
         if !(self.metering.is_automatic() || asks_step) {
             return Ok(Chosen::default());
         }

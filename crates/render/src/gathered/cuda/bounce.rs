@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::constants::BOUNCE_FINER;
 use lightmesh_layout::gathered::{Bounce, Node, NodeLink, Site, TakeSites};
 
 use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Sites, taken};
 use super::names::DeviceNames;
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gathered::bounce::{FAN, ORDERS};
 use crate::gpu::{Cuda, PerStructure, per_structure};

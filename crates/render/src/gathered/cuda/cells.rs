@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::In;
 use lightmesh_layout::constants::SURFACE_KINDS;
 use lightmesh_layout::gathered::{LightPlace, Link, Lookup, Site, SurfaceCells};
 
 use super::device::{Device, read_count};
 use super::names::DeviceNames;
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::{Cuda, PerStructure, per_structure};
 

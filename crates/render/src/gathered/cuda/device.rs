@@ -1,9 +1,9 @@
 //! What the launches of gathered light share.
 
 use bytemuck::Pod;
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::constants::{BLOCK, FOUND_TRIANGLES, WARP};
 
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gathered::fan::Fan;
 use crate::gpu::rays::DeviceWave;

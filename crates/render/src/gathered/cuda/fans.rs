@@ -1,12 +1,12 @@
 //! Fans of rays on a device.
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::gathered::{Fans as Record, GuideFans, SeenRay, Site, TakeSites};
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Rays};
 use lightmesh_layout::{In, Out};
 
 use super::device::Device;
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gathered::fan::Fan;
 use crate::gathered::guide::blocks;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::gathered::{FarLight, GatherFar, GuideFans, Site, TakeSites};
 use lightmesh_layout::{In, Out};
 
@@ -10,7 +11,6 @@ use super::bounce::DeviceBounce;
 use super::cells::DeviceCells;
 use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Guides, Sites, guides, taken};
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gathered::fan::Fan;
 use crate::gpu::Cuda;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::constants::{COARSER, NEAR_CELLS, NEAR_REACH};
 use lightmesh_layout::gathered::{ComeCloser, GatherFine, LightPlace, Site, SurfaceLight, TakeSites};
 use lightmesh_layout::{In, Out};
@@ -12,7 +13,6 @@ use super::cells::DeviceCells;
 use super::device::{Device, read_count};
 use super::fans::{DeviceFans, Sites, taken};
 use super::far::{self, DeviceFar};
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gathered::fan::Fans;
 use crate::gpu::Cuda;

@@ -13,12 +13,12 @@ mod names;
 mod saved;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::gathered::{GatherPoints, LightPlace};
 use lightmesh_layout::geometry::Vec3;
 
 use super::saved::SavedLight;
 use super::{Gathering, PART_KEPT};
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
 use crate::gpu::rays::DeviceWave;

@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::constants::FULL_TABLE;
 use lightmesh_layout::gathered::{Name, Names};
 
 use super::device::{Device, read_count};
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
 

@@ -2,6 +2,7 @@
 //! names.
 
 use bytemuck::{Pod, Zeroable};
+use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::constants::CELL_INDEX_BITS;
 use lightmesh_layout::gathered::{Name, Node, Site};
 use lightmesh_layout::geometry::Vec3;
@@ -13,7 +14,6 @@ use super::far::DeviceFar;
 use super::fine::DeviceFine;
 use super::names::DeviceNames;
 use super::{DeviceSurfaceLight, Kept};
-use crate::cuda::{Buffer, Runtime};
 use crate::error::RenderError;
 use crate::gathered::cells::CellKey;
 use crate::gathered::saved::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite, level_of_key, seed_of};

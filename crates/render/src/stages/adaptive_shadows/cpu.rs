@@ -10,7 +10,6 @@ use super::first::{Extent, Places, all_are_points, place_of, places};
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
-use crate::shadow::rows::Rows;
 use crate::shadow::sight::Emitter;
 use crate::shadow::{Aim, SEGMENTS, hidden, shadow_segment};
 use crate::stages::primary_rays::cpu::{camera_rays, closest_hits};
@@ -26,7 +25,7 @@ pub(crate) fn adaptive_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
         return shadow_rays(wave, &Aim::Middle);
     }
     let Some(view) = wave.rays.view.filter(|_| !wave.hits.is_empty()) else { return shadow_rays(wave, aim) };
-    let rows = Rows::of(aim);
+    let rows = wave.rows(aim);
     let band = Band::new(wave, &view);
     let mut visibility = Visibility::dark(wave.group(), wave.hits.len());
     let planes = visibility.share.chunks_exact_mut(wave.hits.len());
@@ -47,7 +46,7 @@ struct Band<'a> {
     /// All rows.
     rows: Range<u32>,
     /// Rays and hits of the rows next to the wave's.
-    margins: Vec<(crate::data::rays::RayList, Vec<crate::accel::Hit>)>,
+    margins: Vec<(crate::data::rays::RayList, Vec<lightmesh_trace::accel::Hit>)>,
     places: Places,
 }
 

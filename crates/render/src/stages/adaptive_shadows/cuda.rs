@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::Out;
 use lightmesh_layout::constants::AROUND;
 use lightmesh_layout::counters::Counters;
@@ -10,7 +11,6 @@ use lightmesh_layout::geometry::{Rays, Tally};
 use lightmesh_layout::stages::{AdaptiveShadows, Shadows};
 
 use super::first::{all_are_points, places};
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerModule, PerStructure, Work, blocks_for, per_module, per_structure};
@@ -40,7 +40,7 @@ pub(crate) fn adaptive_shadows<R: Runtime>(
     }
     let (rays, lights) = (wave.rays.len(), wave.group());
     let visibility = DeviceVisibility::dark(cuda, rays, lights.clone())?;
-    let band = Band::new(cuda, wave, SampleSets::new(aim))?;
+    let band = Band::new(cuda, wave, SampleSets::new(wave.rows(aim)))?;
     // Entries are numbered with 32 bits.
     let at_once = LIGHTS.min(u32::MAX as usize / rays.max(1)).max(1);
     for first in lights.clone().step_by(at_once) {

@@ -1,7 +1,7 @@
 // The first ray from a surface point to a light: twin of first.rs.
 #pragma once
 
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "shadow/sight.cuh"
 
 // The place of the ray of a pixel of a view's window.

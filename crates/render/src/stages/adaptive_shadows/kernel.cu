@@ -10,7 +10,7 @@
 #endif
 #include "cuda/prelude.cuh"
 
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "shadow/terminator.cuh"
 #include "stages/adaptive_shadows/first.cuh"
 #include "stages/shadow_rays/samples.cuh"

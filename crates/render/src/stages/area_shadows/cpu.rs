@@ -5,9 +5,10 @@ use fearless_simd::{Level, u32x8};
 use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::TangentPlanes;
+use lightmesh_trace::simd::{LANES, dispatch};
 use rayon::prelude::*;
 
-use crate::accel::TangentPlanes;
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
@@ -15,9 +16,7 @@ use crate::prepared::PreparedGeometry;
 use crate::shadow::Aim;
 use crate::shadow::cuts::Cuts;
 use crate::shadow::occlusion::{Bits, Offsets, Sights, gathered};
-use crate::shadow::rows::Rows;
 use crate::shadow::sight::{Emitter, Sight};
-use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
 /// Maximum number of surface points per task.
@@ -25,7 +24,7 @@ const BATCH: usize = 256;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
-    let rows = Rows::of(aim);
+    let rows = wave.rows(aim);
     let emitters = Emitter::all(wave, aim, &rows);
     let mut visibility = Visibility { weighed: true, ..Visibility::dark(wave.group(), wave.hits.len()) };
     let level = Level::new();

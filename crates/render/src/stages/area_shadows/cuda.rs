@@ -1,8 +1,8 @@
 //! The reference on a CUDA device: a warp for 32 surface points, one after the other.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::constants::{FOUND_TRIANGLES, MOST_WORDS, PLANE_WORDS, ROW_TABLE_WORDS, SHAFT_WORDS, WARP};
 
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, per_structure};

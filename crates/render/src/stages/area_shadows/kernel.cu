@@ -8,7 +8,7 @@
 #include "cuda/prelude.cuh"
 
 #include "accel/search.cuh"
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "cuda/tally.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/terminator.cuh"

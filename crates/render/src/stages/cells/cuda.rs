@@ -1,10 +1,10 @@
 //! Surface points by cell on a CUDA device: a block sorts each tile of the image.
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Kernel, Runtime};
 use lightmesh_layout::constants::{TILE, TILE_SIDE};
 use lightmesh_layout::stages::GroupCells;
 
-use crate::cuda::{Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::cells::DeviceCells;
 use crate::gpu::rays::DeviceWave;

@@ -1,7 +1,7 @@
 // Surface points by cell, tile by tile: a block of 1024 threads takes a tile of 32 x 32 pixels, or 1024 rays of a list.
 #pragma once
 
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "cuda/tile.cuh"
 #include "light_mesh/bricks.cuh"
 #include "light_mesh/lattice.cuh"

@@ -3,17 +3,16 @@
 use glam::Vec3;
 use lightmesh_layout::constants::{FILTER_LEVELS, MOST_THROUGHS, PART_OF_LEVEL};
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::{Hit, Ray, TangentPlanes};
 use rayon::prelude::*;
 
 use super::levels;
 use super::shown::may_show;
-use crate::accel::{Hit, Ray, TangentPlanes};
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::{HostWave, Wave};
 use crate::prepared::PreparedScene;
 use crate::shading::tint::transmittance;
-use crate::shadow::rows::Rows;
 use crate::shadow::sight::Emitter;
 use crate::shadow::{Aim, hidden};
 use crate::stages::primary_rays::cpu::batch;
@@ -26,7 +25,7 @@ const FEW: u32 = 4;
 pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut visibility: Visibility) -> Visibility {
     let wave = Wave { lights: visibility.lights.clone().into(), ..*wave };
     let levels = levels(aim);
-    let rows: Vec<_> = levels.iter().map(Rows::of).collect();
+    let rows: Vec<_> = levels.iter().map(|aim| wave.rows(aim)).collect();
     let emitters: Vec<_> = levels.iter().zip(&rows).map(|(aim, rows)| Emitter::all(&wave, aim, rows)).collect();
     visibility.passed = visibility.share.par_iter().map(|&share| Vec3::splat(share)).collect();
     let size = batch(wave.hits.len());

@@ -1,9 +1,9 @@
 //! Filtered light on a CUDA device.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::stages::{Filters, Shadows};
 
 use super::levels;
-use crate::cuda::Runtime;
 use crate::data::wave::Wave;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
@@ -30,7 +30,8 @@ pub(crate) fn filters<R: Runtime>(
     let visibility = DeviceVisibility { passed: Some(passed), ..visibility };
     let kernel = KERNEL.of(panes);
     let of_panes = Wave { scene: panes, ..*wave };
-    let levels: Vec<(Aim, SampleSets)> = levels(aim).into_iter().map(|aim| (aim, SampleSets::new(&aim))).collect();
+    let with_rows = |aim: Aim| (aim, SampleSets::new(wave.rows(&aim)));
+    let levels: Vec<(Aim, SampleSets)> = levels(aim).into_iter().map(with_rows).collect();
     // A light without samples has its centre.
     let slices_of = |sets: &SampleSets| u64::from(sets.count.max(1)) * lights;
     let slices: u64 = levels.iter().map(|(_, sets)| slices_of(sets)).sum();

@@ -4,7 +4,7 @@
 #include "cuda/prelude.cuh"
 
 #include "accel/nearest.cuh"
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "shading/dielectric.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/shadow.cuh"

@@ -4,9 +4,9 @@ use std::cell::OnceCell;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{CONTRAST_FLOOR, PIXEL_SHARED, PIXEL_SPLIT};
+use lightmesh_trace::accel::Hit;
 use rayon::prelude::*;
 
-use crate::accel::Hit;
 use crate::antialiasing::Antialiasing;
 use crate::counters::Tally;
 use crate::data::picture::{Picture, light_groups_of};

@@ -1,10 +1,10 @@
 //! Fragments on a CUDA device.
 
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::geometry::{ListedRay, Rays};
 use lightmesh_layout::stages::PixelSamples;
 
 use crate::antialiasing::Antialiasing;
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::film::DeviceFilm;
 use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceWave};

@@ -6,6 +6,7 @@ use std::ops::Range;
 use fearless_simd::{Level, prelude::*};
 use glam::Vec3;
 use lightmesh_scene::Weight;
+use lightmesh_trace::simd::dispatch;
 use rayon::prelude::*;
 
 use crate::counters::Tally;
@@ -15,7 +16,6 @@ use crate::data::visibility::Visibility;
 use crate::data::wave::{HostSeen, HostWave};
 use crate::light_mesh::{CellPoints, LightMesh, Span, UsedPoints, Windows, point_of, sum_in_both, sum_of_products};
 use crate::shadow::{above_horizon, fallback};
-use crate::simd::dispatch;
 
 /// Number of surface points per task.
 const RUN: usize = 4096;

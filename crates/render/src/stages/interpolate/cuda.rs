@@ -1,9 +1,9 @@
 //! Formula (3) on a CUDA device: one warp per item, then long tests where no light point counts.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::constants::{ITEM_WARPS, MOST_LIGHTS};
 use lightmesh_layout::stages::Interpolate;
 
-use crate::cuda::Runtime;
 use crate::data::wave::Seen;
 use crate::error::RenderError;
 use crate::gpu::cells::DeviceCells;

@@ -9,7 +9,7 @@
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "cuda/tally.cuh"
 #include "cuda/warp.cuh"
 #include "light_mesh/lattice.cuh"

@@ -1,10 +1,10 @@
 //! Items on a CUDA device: a block sorts each tile of the image.
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Kernel, Runtime};
 use lightmesh_layout::constants::{TILE, TILE_SIDE};
 use lightmesh_layout::stages::GroupItems;
 
-use crate::cuda::{Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::items::DeviceItems;
 use crate::gpu::rays::DeviceWave;

@@ -4,7 +4,7 @@
 // 4. `gather_items`: those of all tiles in one list.
 #include "cuda/prelude.cuh"
 
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "cuda/tile.cuh"
 #include "shadow/terminator.cuh"
 

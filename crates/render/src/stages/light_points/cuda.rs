@@ -6,12 +6,12 @@
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::constants::ITEM_WARPS;
 use lightmesh_layout::mesh::BrickTable;
 use lightmesh_layout::stages::LightPoints;
 
 use crate::counters::Tally;
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::cells::DeviceCells;
 use crate::gpu::masks::DeviceMasks;

@@ -1,12 +1,12 @@
 //! Step 4 on a CUDA device: one thread per light point, light by light.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::mesh::LitBy;
 use lightmesh_layout::stages::LongTests;
 use lightmesh_scene::Light;
 
 use crate::cache::{DeviceTable, Kept, Seen};
 use crate::counters::Tally;
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::lit::DeviceLit;
 use crate::gpu::points::DevicePoints;

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{MOST_MERGED, WARP};
+use lightmesh_trace::accel::Hit;
 use rayon::prelude::*;
 
-use crate::accel::Hit;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;

@@ -1,11 +1,11 @@
 //! Merged rays on a CUDA device: found, counted, summed, written in their order.
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::geometry::Rays;
 use lightmesh_layout::stages::MergedRays;
 use lightmesh_layout::{In, Out};
 
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceWave};
 use crate::gpu::{BLOCK, Cuda, blocks_for};

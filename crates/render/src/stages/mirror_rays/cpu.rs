@@ -7,10 +7,10 @@ use lightmesh_layout::constants::{
     DIRECTION_SHIFT, FADE_SHIFT, LEAST_ONWARD, LEAST_THIN, LOBE_PATTERN, LOBE_TILE, MOST_DIRECTIONS, MOST_THROUGHS,
     THROUGHS_SHIFT, UPPER_BITS, UPPER_NIBBLES, UPPER_PAIRS,
 };
+use lightmesh_trace::accel::Ray;
 use rayon::prelude::*;
 
 use super::thinning::Thinning;
-use crate::accel::Ray;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;

@@ -1,11 +1,11 @@
 //! Rays that go on, on a CUDA device: counted, summed, written in the order of the rays.
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::geometry::{Cone, Rays};
 use lightmesh_layout::stages::MirrorRays;
 use lightmesh_layout::{In, Out};
 
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceRays, DeviceWave};
 use crate::gpu::{BLOCK, Cuda, blocks_for};

@@ -27,9 +27,8 @@ use fearless_simd::{f32x8, mask32x8};
 use glam::Vec3;
 use lightmesh_layout::constants::{GROWN, REGION_ROUNDING, UNIT_ROUNDOFF};
 use lightmesh_scene::Bounds;
-
-use crate::accel::{PIECE, TangentPlanes, Triangle};
-use crate::simd::{Axes, cross, difference, dot, fused_dot, load, scaled, splat, sum};
+use lightmesh_trace::accel::{PIECE, TangentPlanes, Triangle};
+use lightmesh_trace::simd::{Axes, cross, difference, dot, fused_dot, load, scaled, splat, sum};
 
 /// The boxes of an item and an emitter.
 #[derive(Clone, Copy, Debug, Default)]

@@ -7,23 +7,22 @@ use fearless_simd::prelude::*;
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::{Bvh, Form, TangentPlanes};
+use lightmesh_trace::simd::{LANES, dispatch};
 use rayon::prelude::*;
 
 use super::candidates::{Candidates, above_planes};
 use super::group::{Group, View};
-use crate::accel::{Bvh, Form, TangentPlanes};
 use crate::counters::Tally;
 use crate::data::items::Items;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shadow::Aim;
 use crate::shadow::occlusion::gathered;
-use crate::shadow::rows::Rows;
 use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::sight::Emitter;
 use crate::shadow::terminator::ShadowPoint;
 use crate::shadow::weights::Weighed;
-use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
 /// Items per task.
@@ -52,7 +51,7 @@ const LEAST_SPENT: f64 = 2.0;
 
 /// The visible share of each light from each surface point.
 pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visibility {
-    let rows = Rows::of(aim);
+    let rows = wave.rows(aim);
     let emitters = Emitter::all(wave, aim, &rows);
     let level = Level::new();
     // Each share has one writer.

@@ -1,11 +1,11 @@
 //! Occluder lists on a CUDA device: a warp for each item.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::constants::{
     FOUND_TRIANGLES, MOST_STARTS, MOST_WORDS, OCCLUDER_PARTS, PLANE_WORDS, ROW_TABLE_WORDS, SEARCHED_WORDS, WARP,
 };
 use lightmesh_layout::stages::Shadows;
 
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::items::DeviceItems;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};

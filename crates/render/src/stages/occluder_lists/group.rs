@@ -5,16 +5,16 @@ use fearless_simd::{f32x8, mask32x8, u32x8};
 use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::Bvh;
+use lightmesh_trace::simd::{Axes, LANES};
 
 use super::candidates::{Candidates, Chosen, Shaft};
-use crate::accel::Bvh;
 use crate::data::wave::HostWave;
 use crate::shadow::cuts::Cuts;
 use crate::shadow::occlusion::{Bits, Offsets, Sights};
 use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::sight::{Emitter, Sight};
 use crate::shadow::weights::Weighed;
-use crate::simd::{Axes, LANES};
 use crate::surface::SurfacePoint;
 
 /// What is looked at.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/search.cuh"
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "cuda/tally.cuh"
 #include "shadow/sample_ray.cuh"
 #include "shadow/terminator.cuh"

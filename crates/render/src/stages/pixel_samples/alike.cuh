@@ -1,7 +1,7 @@
 // The samples of a pixel, whether two of them lie on one surface, and whether it mirrors: twin of alike.rs, and of antialiasing.rs.
 #pragma once
 
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "sampling.cuh"
 #include "shading/facets.cuh"
 #include "surface.cuh"

@@ -5,8 +5,8 @@ use lightmesh_layout::constants::{
     FAINT_MIRROR, MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT,
 };
 use lightmesh_scene::Material;
+use lightmesh_trace::accel::{Hit, Ray};
 
-use crate::accel::{Hit, Ray};
 use crate::antialiasing::Antialiasing;
 use crate::data::rays::RayList;
 use crate::prepared::PreparedScene;

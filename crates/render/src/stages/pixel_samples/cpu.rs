@@ -5,11 +5,11 @@ use std::sync::Arc;
 use fearless_simd::Level;
 use glam::Vec3;
 use lightmesh_layout::constants::PIXEL_SHARED;
+use lightmesh_trace::accel::Hit;
 use rayon::prelude::*;
 
 use super::SampleRange;
 use super::alike::{Facet, Surfaces, lets_through};
-use crate::accel::Hit;
 use crate::counters::Tally;
 use crate::data::mattes::count;
 use crate::data::picture::Picture;

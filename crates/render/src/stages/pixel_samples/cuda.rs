@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Kernel, Runtime};
 use lightmesh_layout::stages::PixelSamples;
 
 use super::SampleRange;
 use crate::counters::Tally;
-use crate::cuda::{Kernel, Runtime};
 use crate::error::RenderError;
 use crate::footprint::Cone;
 use crate::gpu::film::DeviceFilm;

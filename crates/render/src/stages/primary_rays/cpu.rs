@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use lightmesh_layout::constants::TILE_SIDE;
+use lightmesh_trace::accel::{Hit, Ray};
 use rayon::prelude::*;
 
-use crate::accel::{Hit, Ray};
 use crate::counters::Tally;
 use crate::data::rays::RayList;
 use crate::job::Job;

@@ -1,10 +1,10 @@
 //! Step 1 on a CUDA device.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::geometry as layout;
 use lightmesh_layout::stages::PrimaryRays;
 
 use crate::counters::Tally;
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceHits, DeviceRays};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerStructure, Work, blocks_for, per_structure};

@@ -6,7 +6,7 @@
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "cuda/tally.cuh"
 
 template <class Structure>

@@ -1,10 +1,10 @@
 //! Formula (1) on a CUDA device.
 
 use bytemuck::Zeroable;
+use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::In;
 use lightmesh_layout::stages::Shade;
 
-use crate::cuda::{Buffer, Kernel, Runtime};
 use crate::error::RenderError;
 use crate::gathered::cuda::DeviceGathered;
 use crate::gpu::film::DeviceFilm;

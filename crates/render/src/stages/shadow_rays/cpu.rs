@@ -1,12 +1,11 @@
 //! Shadow rays on the CPU: batch by batch of surface points, light by light, so that segments towards one light are traced together.
 
+use lightmesh_trace::accel::Ray;
 use rayon::prelude::*;
 
-use crate::accel::Ray;
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
-use crate::shadow::rows::Rows;
 use crate::shadow::sight::Emitter;
 use crate::shadow::terminator::ShadowPoint;
 use crate::shadow::{Aim, SEGMENTS, hidden};
@@ -17,7 +16,7 @@ const BATCH: usize = 1024;
 
 /// The visible share of each light, by shadow rays from each surface point.
 pub(crate) fn shadow_rays(wave: &HostWave, aim: &Aim) -> Visibility {
-    let rows = Rows::of(aim);
+    let rows = wave.rows(aim);
     let emitters = Emitter::all(wave, aim, &rows);
     let most = wave.lights().iter().map(|light| aim.samples(light)).max().unwrap_or(1);
     let batch = (SEGMENTS / most as usize).clamp(1, BATCH);

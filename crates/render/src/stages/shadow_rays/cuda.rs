@@ -1,8 +1,8 @@
 //! Shadow rays on a CUDA device.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::stages::{ShadowRays, Shadows};
 
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerStructure, Work, blocks_for, per_structure, slices_of_rays};
@@ -63,7 +63,7 @@ fn to_samples<R: Runtime>(
 ) -> Result<(), RenderError> {
     let lights = visibility.lights.len() as u64;
     let kernel = TO_SAMPLES.of(wave.scene);
-    let sets = SampleSets::new(aim);
+    let sets = SampleSets::new(wave.rows(aim));
     let slices = u64::from(sets.count) * lights;
     let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices;
     for slice in 0..slices {

@@ -8,7 +8,7 @@
 #endif
 #include "cuda/prelude.cuh"
 
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/shadow.cuh"
 #include "shadow/terminator.cuh"

@@ -1,7 +1,7 @@
 // Rays to the samples of a light, one thread per surface point: what sample_rays and the second step of adaptive shadow rays share.
 #pragma once
 
-#include "cuda/rays.cuh"
+#include "data/rays.cuh"
 #include "shadow/seen.cuh"
 #include "shadow/shadow.cuh"
 

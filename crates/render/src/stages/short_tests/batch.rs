@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
+use lightmesh_trace::accel::{Coverage, Triangle};
+use lightmesh_trace::simd::{Axes, LANES, cross, difference, dot, dot_along_x, scaled, splat};
 
 use super::MaskCounts;
 use super::cells::CellOccluders;
-use crate::accel::{Coverage, Triangle};
 use crate::data::masks::population;
 use crate::light_mesh::{CellPoints, LightMesh};
-use crate::simd::{Axes, LANES, cross, difference, dot, dot_along_x, scaled, splat};
 use crate::surface::SurfacePoint;
 
 /// Up to eight surface points and, for each light point of the template, the lanes that still see it.
@@ -101,7 +101,7 @@ impl Batch {
         sizes
     }
 
-    /// [`ShortTest::occluder`](crate::accel::ShortTest::occluder) in each lane, with the same operations in the same order, and
+    /// [`ShortTest::occluder`](lightmesh_trace::accel::ShortTest::occluder) in each lane, with the same operations in the same order, and
     /// the lanes that have an occluder.
     #[inline(always)]
     fn occluders<S: Simd>(&self, simd: S, mesh: &LightMesh, corners: &[Vec3; 3]) -> Option<(Occluders<S>, u8)> {
@@ -128,7 +128,7 @@ impl Batch {
         (lanes != 0).then_some((Occluders { sides, volume: sign * volume, slack }, lanes))
     }
 
-    /// [`Occluder::blocks`](crate::accel::triangle::Occluder::blocks) in each of `lanes`, for the light points that the
+    /// [`Occluder::blocks`](lightmesh_trace::accel::triangle::Occluder::blocks) in each of `lanes`, for the light points that the
     /// candidate's shadow can reach.
     #[inline(always)]
     fn clear_blocked<S: Simd>(

@@ -8,8 +8,8 @@ use std::ops::Range;
 
 use glam::{IVec3, Vec3};
 use lightmesh_scene::Bounds;
+use lightmesh_trace::accel::{Region, TangentPlanes, Triangle};
 
-use crate::accel::{Region, TangentPlanes, Triangle};
 use crate::light_mesh::LightMesh;
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;

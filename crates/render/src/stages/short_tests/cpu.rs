@@ -1,6 +1,7 @@
 //! Step 2 on the CPU: masks, one run of cells after another.
 
 use fearless_simd::{Level, prelude::*};
+use lightmesh_trace::simd::{LANES, dispatch};
 use rayon::prelude::*;
 
 use super::batch::Batch;
@@ -12,7 +13,6 @@ use crate::data::masks::Masks;
 use crate::data::wave::HostWave;
 use crate::light_mesh::{CellPoints, LightMesh, point_of};
 use crate::settings::ShortTests;
-use crate::simd::{LANES, dispatch};
 use crate::surface::SurfacePoint;
 
 /// Surface points per task.

@@ -1,11 +1,11 @@
 //! Step 2 on a CUDA device: one warp for up to 32 surface points of a cell.
 
+use lightmesh_kernels::Runtime;
 use lightmesh_layout::constants::{
     CANDIDATE_WORDS, CANDIDATES, FOUND_TRIANGLES, LISTED_TARGETS, PLANE_WORDS, TARGET_WORDS,
 };
 use lightmesh_layout::stages::ShortTests;
 
-use crate::cuda::Runtime;
 use crate::error::RenderError;
 use crate::gpu::cells::DeviceCells;
 use crate::gpu::masks::DeviceMasks;

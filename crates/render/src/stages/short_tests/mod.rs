@@ -4,7 +4,7 @@
 //!
 //! 1. |x − P| < r,
 //! 2. (n, x − P) > ε h (see [`LightMesh::least_height`]),
-//! 3. no triangle stands between P and x, by [`ShortTest`](crate::accel::ShortTest).
+//! 3. no triangle stands between P and x, by [`ShortTest`](lightmesh_trace::accel::ShortTest).
 //!
 //! Surface points are grouped by light-mesh cell, because all points of a cell share their template, its positions and the
 //! triangles that can matter. [`cells`] uses that; [`plain`] queries the acceleration structure segment by segment and is the

@@ -1,10 +1,10 @@
 //! The plain short tests: every segment through the acceleration structure. The reference.
 
 use glam::Vec3;
+use lightmesh_trace::accel::triangle::dot_along_x;
+use lightmesh_trace::accel::{ShortSegments, ShortTest};
 
 use super::MaskCounts;
-use crate::accel::triangle::dot_along_x;
-use crate::accel::{ShortSegments, ShortTest};
 use crate::data::masks::population;
 use crate::light_mesh::{CellPoints, LightMesh};
 use crate::prepared::PreparedScene;

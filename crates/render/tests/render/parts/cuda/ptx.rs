@@ -22,7 +22,7 @@ fn all_kernels_are_for_devices_from_7_5_on_and_their_version_is_in_the_table() {
 
 #[test]
 fn modules_are_unpacked_as_they_are_committed() {
-    let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../src/cuda/ptx"));
+    let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../kernels/src/cuda/ptx"));
     for module in MODULES {
         let committed = std::fs::read(folder.join(format!("{}.ptx", module.name))).unwrap();
         let unpacked = module.unpacked().unwrap();

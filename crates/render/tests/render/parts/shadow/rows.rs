@@ -1,19 +1,28 @@
+use std::sync::Arc;
+
 use lightmesh_layout::constants::{MOST_OF_ROW, MOST_ROWS};
 use lightmesh_layout::scene::SampleRows;
-use lightmesh_render::Sampling;
-use lightmesh_render::backend::Aim;
-use lightmesh_render::internals::shadow::{KNOWN, MOST_KNOWN, Rows};
+use lightmesh_render::internals::shadow::{KnownRows, MOST_KNOWN, Rows};
 
 const NUMBERS: [u32; 12] = [1, 2, 3, 5, 16, 17, 64, 225, 256, 300, 1000, 65535];
 
 #[test]
 fn rows_that_are_kept_are_those_of_their_number() {
-    let of = |samples| Rows::of(&Aim::Extent(Sampling { samples, seed: 0, spread: true }));
+    let known = KnownRows::default();
     let count = |rows: &Rows| rows.disc.iter().flat_map(|set| set.count).sum::<u32>();
     for samples in (1..=20).chain(1..=20) {
-        assert_eq!(count(&of(samples)), samples);
+        assert_eq!(count(&known.of(samples)), samples);
     }
-    assert!(KNOWN.lock().unwrap().len() <= MOST_KNOWN);
+    let first = known.of(1);
+    assert!(Arc::ptr_eq(&first, &known.of(1)), "rows are found once");
+    (2..=MOST_KNOWN as u32 + 1).for_each(|samples| drop(known.of(samples)));
+    assert!(!Arc::ptr_eq(&first, &known.of(1)), "no more than these are kept");
+}
+
+#[test]
+fn renderers_have_rows_of_their_own() {
+    let [one, other] = [KnownRows::default(), KnownRows::default()];
+    assert!(!Arc::ptr_eq(&one.of(16), &other.of(16)));
 }
 
 #[test]

@@ -2,11 +2,10 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, f32x8, u32x8};
 use glam::Vec3;
 use lightmesh_layout::scene::SampleRows;
+use lightmesh_render::SurfacePoint;
 use lightmesh_render::accel::{Accelerator, Bvh, Triangle};
-use lightmesh_render::backend::Aim;
 use lightmesh_render::internals::shadow::{Cuts, Rows, SampleRays, Sight, Sights};
 use lightmesh_render::internals::simd::{LANES, dispatch, splat};
-use lightmesh_render::{Sampling, SurfacePoint};
 
 /// Numbers in [−1, 1).
 struct Random(u64);
@@ -82,7 +81,7 @@ fn rays_have_the_bits_of_rows() {
     let mut random = Random(7);
     let mut counts = [0; 2];
     for samples in [1, 16, 64, 225] {
-        let rows = Rows::of(&Aim::Extent(Sampling { samples, seed: 0, spread: true }));
+        let rows = Rows::new(samples);
         for trial in 0..20 {
             let corners = match trial % 4 {
                 0 => sheet(&mut random),
