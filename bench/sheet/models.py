@@ -15,7 +15,7 @@ KINDS = {".obj", ".gltf", ".glb", ".ply", ".stl"}
 # Architecture is seen from inside; everything else as the program frames it. From the README beside the models.
 CAMERAS = {"sponza/sponza.obj": "-13,3,0;10,5,0;60"}
 
-# The program's lights for scenes without any (crates/scene/src/framing.rs): right and up in reaches, and intensity.
+# The program's lights for scenes without any (crates/scene/src/staging/framing/mod.rs): right and up in reaches, and intensity.
 DEFAULT_LIGHTS = [(-0.5, 0.8, 1.0), (0.9, 0.2, 0.25)]
 SPREAD = 0.05
 

@@ -3,21 +3,21 @@
 //! Tests are a crate of their own, so that this one is compiled once, not a second time with its tests.
 
 pub mod animation {
-    pub use crate::animation::parts::{Hold, Influences, Morph, Shape, Skin, Target, cofactors};
-    pub use crate::animation::rig::{Node, Place, Rig};
-    pub use crate::animation::track::{Interpolation, Kind, Track};
+    pub use crate::model::animation::parts::{Hold, Influences, Morph, Shape, Skin, Target, cofactors};
+    pub use crate::model::animation::rig::{Node, Place, Rig};
+    pub use crate::model::animation::track::{Interpolation, Kind, Track};
 }
 
-pub mod border {
-    pub use crate::border::Border;
+pub mod file_access {
+    pub use crate::build::file_access::FileAccess;
 }
 
 pub mod builder {
-    pub use crate::builder::normal_placement;
+    pub use crate::model::transforms::normal_placement;
 
     use glam::DMat4;
 
-    use crate::loaded_mesh::LoadedMesh;
+    use crate::build::loaded_mesh::LoadedMesh;
     use crate::{Position, SceneBuilder};
 
     /// Adds a mesh passed by value.
@@ -31,11 +31,11 @@ pub mod builtin {
 }
 
 pub mod camera {
-    pub use crate::camera::{LARGEST_SHIFT, upper_edge};
+    pub use crate::model::camera::{LARGEST_SHIFT, upper_edge};
 }
 
 pub mod draft {
-    pub use crate::draft::Draft;
+    pub use crate::build::draft::Draft;
 }
 
 pub mod environment {
@@ -45,8 +45,9 @@ pub mod environment {
 
     use crate::{Environment, EnvironmentError, Up};
 
-    pub use crate::environment::sky::{clear, sun_illuminance};
-    pub use crate::environment::{from_angles, luminance};
+    pub use crate::model::colors::luminance;
+    pub use crate::model::environment::from_angles;
+    pub use crate::model::environment::sky::{clear, sun_illuminance};
 
     /// The image in the content of the file at `path`.
     pub fn decode(path: &Path, bytes: &[u8], up: Up, budget: Budget) -> Result<Environment, EnvironmentError> {
@@ -55,12 +56,12 @@ pub mod environment {
 }
 
 pub mod error {
-    pub use crate::error::suggestion;
+    pub use crate::build::error::suggestion;
 }
 
 pub mod formats {
     pub mod colors {
-        pub use crate::formats::colors::linear;
+        pub use crate::model::colors::linear;
     }
 
     pub mod gltf {
@@ -95,20 +96,21 @@ pub mod formats {
 }
 
 pub mod framing {
-    pub use crate::framing::sight::{Seen, Sight, distance};
-    pub use crate::framing::{FILL, VFOV, corner};
+    pub use crate::staging::framing::fitting::{FILL, VFOV, corner};
+    pub use crate::staging::framing::sight::{Seen, Sight, distance};
 }
 
 pub mod geometry_check {
-    pub use crate::geometry_check::first_beyond;
+    pub use crate::build::geometry_check::first_beyond;
 }
 
 pub mod lamps {
-    pub use crate::lamps::{LIGHTS, lamps};
+    pub use crate::optics::lamps::lamps;
+    pub use crate::optics::lamps::merged::LIGHTS;
 }
 
 pub mod loaded_mesh {
-    pub use crate::loaded_mesh::LoadedMesh;
+    pub use crate::build::loaded_mesh::LoadedMesh;
 }
 
 pub mod objects {
@@ -133,7 +135,7 @@ pub mod principled {
     use glam::Vec3;
 
     use crate::Principled;
-    pub use crate::principled::{SHARPEST, shininess};
+    pub use crate::optics::principled::{SHARPEST, shininess};
 
     /// What the layer reflects at normal and at grazing incidence.
     pub fn reflectance(of: &Principled) -> (Vec3, f32) {
@@ -142,35 +144,36 @@ pub mod principled {
 }
 
 pub mod quote {
-    pub use crate::quote::{MESSAGE, QUOTED, abridged, list, quote};
+    pub use crate::build::quote::{MESSAGE, QUOTED, abridged, list, quote};
 }
 
 pub mod shapes {
-    pub use crate::shapes::{Shape, tangents};
+    pub use crate::build::shapes::{Shape, tangents};
 }
 
 pub mod smooth {
-    pub use crate::smooth::buckets::Buckets;
-    pub use crate::smooth::facets::{corner_angle, normal};
-    pub use crate::smooth::weld::weld;
-    pub use crate::smooth::{STEPS, Unsmooth, smooth};
+    pub use crate::build::smooth::buckets::Buckets;
+    pub use crate::build::smooth::facets::{corner_angle, normal};
+    pub use crate::build::smooth::steps::STEPS;
+    pub use crate::build::smooth::weld::weld;
+    pub use crate::build::smooth::{Unsmooth, smooth};
 }
 
 pub mod texture {
-    pub use crate::texture::decode::{Undecodable, decode};
-    pub use crate::texture::heights::{is_grey, normals_of_heights};
-    pub use crate::texture::missing_uvs::untextured;
-    pub use crate::texture::packed::packed;
+    pub use crate::build::textures::decode::{Undecodable, decode};
+    pub use crate::build::textures::missing_uvs::untextured;
+    pub use crate::optics::heights::{is_grey, normals_of_heights};
+    pub use crate::optics::packed::packed;
 }
 
-pub mod usable {
-    pub use crate::usable::{keep_finite, keep_passive, keep_placed, unseen};
+pub mod sanitize {
+    pub use crate::build::sanitize::{clamp_reflectance, drop_invalid_positions, keep_finite, unseen};
 }
 
 pub mod vertices {
-    pub use crate::vertices::Vertices;
+    pub use crate::build::vertices::Vertices;
 }
 
 pub mod warnings {
-    pub use crate::warnings::{MOST, Warnings};
+    pub use crate::build::warnings::{MOST, Warnings};
 }

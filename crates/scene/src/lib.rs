@@ -1,7 +1,14 @@
 //! The scene model, and how scenes are read. No rendering happens here.
 //!
 //! A [`Scene`] is what every loader and generator returns: [`Geometry`] (triangles with materials and textures, opaque or cut out), [`Lights`] and
-//! cameras, all in one coordinate frame. Each file format is one module under `formats`, and each ends in `-> Scene`.
+//! cameras, all in one coordinate frame. Modules are storeys; each imports those before it alone:
+//!
+//! 1. `model`: what a scene is.
+//! 2. `optics`: materials of other models, and lights for surfaces that emit light.
+//! 3. `build`: how a scene is made of parts, in world coordinates until its frame is known.
+//! 4. `staging`: the view, lights and ground that a picture needs and a file may lack. [`builtin`]: scenes that are generated.
+//! 5. `formats`: one module for each file format, each ending in `-> Scene`.
+//! 6. `export`: what is written, and what is told about a scene.
 //!
 //! # Coordinates
 //!
@@ -9,83 +16,28 @@
 //! scene a hundred kilometres from the world's origin keeps the precision that it would have at the origin.
 #![warn(missing_docs)]
 
-mod animation;
-mod border;
-mod builder;
+mod build;
 pub mod builtin;
-mod camera;
-mod dielectric;
-mod draft;
-mod environment;
-mod error;
 mod export;
-mod facets;
 mod formats;
-mod framing;
-mod geometry;
-mod geometry_check;
-mod ground;
-mod info;
-mod instances;
 #[doc(hidden)]
 pub mod internals;
-mod lamps;
-mod light;
-mod lights;
-mod loaded_mesh;
-mod material;
-mod mesh;
-mod mesh_part;
-mod names;
-mod objects;
-mod opacity;
-mod open;
-mod outdoors;
-mod principled;
-mod quote;
-mod scene;
-mod scene_format;
-mod shapes;
-mod smooth;
-mod studio;
-mod texture;
-mod up;
-mod usable;
-mod vertices;
-mod warnings;
+mod model;
+mod optics;
+mod staging;
 
 /// The vector and matrix types of this crate's API.
 pub use glam;
 
-pub use animation::Animation;
-pub use builder::SceneBuilder;
-pub use camera::{Camera, CameraError, Fov, Projection};
-pub use dielectric::Dielectric;
-pub use environment::{
-    Environment, EnvironmentError, EnvironmentLevel, Moment, Sky, SkyError, SkyKind, Sun, SunError, SunPosition,
-    Surroundings,
+pub use build::{CreaseAngle, GeometryError, LoadError, LoadOptions, MeshPart, Place, SceneBuilder, SceneFormat};
+pub use export::{AnimationInfo, BoundsInfo, CameraInfo, ExportError, LightInfo, SceneInfo};
+pub use formats::EnvironmentError;
+pub use model::{
+    Affine, Animation, Bounds, Camera, CameraError, Dielectric, Environment, EnvironmentLevel, FIRST_INSTANCED, Facets,
+    Falloff, Fov, Geometry, Instance, Instances, Instancing, Light, LightError, LightKind, LightMeshDefaults, Lights,
+    Material, Mesh, Moment, NormalMap, Objects, Opacity, OpacityChannel, OpacityMode, OwnedPositions, Position,
+    Positions, Projection, Scene, Sky, SkyError, SkyKind, Sun, SunError, SunPosition, Surroundings, Texture,
+    TextureUse, Textures, UNNAMED, UnknownName, Up, Weight, Wrap,
 };
-pub use error::{LoadError, Place};
-pub use export::ExportError;
-pub use facets::Facets;
-pub use framing::{Added, Lighting, UnknownCamera, Viewpoint};
-pub use geometry::Geometry;
-pub use geometry_check::GeometryError;
-pub use info::{AnimationInfo, BoundsInfo, CameraInfo, LightInfo, SceneInfo};
-pub use instances::{Affine, FIRST_INSTANCED, Instance, Instances, Instancing};
-pub use light::{Falloff, Light, LightError, LightKind};
-pub use lights::Lights;
-pub use material::Material;
-pub use mesh::{Bounds, Mesh};
-pub use mesh_part::MeshPart;
-pub use names::UnknownName;
-pub use objects::{Objects, UNNAMED};
-pub use opacity::{Opacity, OpacityChannel, OpacityMode};
-pub use open::LoadOptions;
-pub use principled::Principled;
-pub use scene::{LightMeshDefaults, Scene, Weight};
-pub use scene_format::SceneFormat;
-pub use smooth::CreaseAngle;
-pub use texture::{NormalMap, Texture, TextureUse, Textures, Wrap};
-pub use up::{Up, UpInfo};
-pub use vertices::{OwnedPositions, Position, Positions};
+pub use optics::Principled;
+pub use staging::{Added, Lighting, UnknownCamera, UpInfo, Viewpoint};

@@ -2,11 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
+use super::composition::Composition;
 use super::lights::{self, Lamp};
 use super::math::{around, srgb};
+use super::options::BuiltinOptions;
 use super::parts::{Open, Paint, Palette, Parts, Place};
-use super::{BuiltinOptions, Composition};
-use crate::Scene;
+use crate::{Light, Scene};
 
 struct Paints {
     lawn: Paint,
@@ -51,7 +52,7 @@ pub fn gazebo(options: &BuiltinOptions) -> Scene {
     .finish()
 }
 
-fn lights(options: &BuiltinOptions) -> Vec<crate::Light> {
+fn lights(options: &BuiltinOptions) -> Vec<Light> {
     let lamps = [
         Lamp { position: Vec3::new(-15.0, 38.0, 34.0), share: 0.6, tint: Vec3::new(1.0, 0.96, 0.88) },
         Lamp { position: Vec3::new(17.0, 33.0, 40.0), share: 0.22, tint: Vec3::new(0.9, 0.95, 1.0) },

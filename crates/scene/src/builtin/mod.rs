@@ -14,6 +14,7 @@
 //! its experiments.
 
 mod childpark;
+mod composition;
 mod foliage;
 mod garden;
 mod gazebo;
@@ -24,15 +25,12 @@ mod parts;
 mod plants;
 mod surfaces;
 
-use glam::{Vec2, Vec3};
-
 pub use childpark::childpark;
 pub use garden::garden;
 pub use gazebo::gazebo;
 pub use options::BuiltinOptions;
 
-use crate::{Camera, Fov, Geometry, Light, Lights, LoadError, Mesh, Projection, Scene};
-use parts::Palette;
+use crate::{LoadError, Scene};
 
 /// Generates one of the scenes from its options.
 type Generator = fn(&BuiltinOptions) -> Scene;
@@ -52,35 +50,4 @@ pub(crate) fn open(query: &str) -> Result<Scene, LoadError> {
         known: SCENES.map(|(known, _)| known.to_owned()).to_vec(),
     })?;
     Ok(generate(&BuiltinOptions::parse(name, options)?))
-}
-
-/// Settings common to all scenes.
-struct Composition {
-    name: &'static str,
-    mesh: Mesh,
-    palette: Palette,
-    lights: Vec<Light>,
-    eye: Vec3,
-    target: Vec3,
-    vfov: f32,
-    ambient: Vec3,
-    sky: Vec3,
-}
-
-impl Composition {
-    fn finish(self) -> Scene {
-        let camera = Camera {
-            name: "main".into(),
-            position: self.eye,
-            direction: (self.target - self.eye).normalize(),
-            up: Vec3::Y,
-            projection: Projection::Perspective(Fov::Vertical(self.vfov)),
-            shift: Vec2::ZERO,
-            motion: None,
-        };
-        let geometry = Geometry { mesh: self.mesh, materials: self.palette.0, ..Geometry::default() };
-        let lights =
-            Lights { list: self.lights, ambient: Some(self.ambient), background: Some(self.sky), ..Lights::default() };
-        Scene { lights, cameras: vec![camera], ..Scene::new(self.name, geometry) }
-    }
 }

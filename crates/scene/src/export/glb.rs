@@ -9,18 +9,17 @@ use std::{collections::HashMap, path::Path};
 use glam::{DVec3, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
-use super::{ExportError, own_lights, pictures::Pictures, refused, toward_surface};
+use super::error::{ExportError, refused};
+use super::lights::{own_lights, toward_surface};
+use super::pictures::Pictures;
+use crate::build::shapes::tangents;
+use crate::formats::gltf::extras::{
+    CameraExtras, DielectricExtras, FacetExtras, LightExtras, MaterialExtras, OpacityExtras, SceneExtras, ShapeExtras,
+};
+use crate::model::transforms::upright;
 use crate::{
     Camera, Dielectric, Falloff, Fov, Light, LightKind, Material, Mesh, Opacity, OpacityChannel, OpacityMode,
     Projection, Scene,
-    formats::{
-        gltf::extras::{
-            CameraExtras, DielectricExtras, FacetExtras, LightExtras, MaterialExtras, OpacityExtras, SceneExtras,
-            ShapeExtras,
-        },
-        toml::upright,
-    },
-    shapes::tangents,
 };
 
 /// Which content is written.

@@ -8,47 +8,23 @@
 //! Coordinates are written so that every `f32` of the local frame is read back exactly; only a scene far from the world's
 //! origin may round its smallest ones. Files are written next to their target and renamed: never half-written.
 
+mod error;
 mod glb;
+mod info;
+mod lights;
 mod pictures;
 mod text;
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::io;
+use std::path::{Path, PathBuf};
 
-use glam::Vec3;
-use lightmesh_files::{PublishError, Ready, WriteError, publish};
+use lightmesh_files::{Ready, publish};
 
-use crate::{Light, Scene};
+use self::error::refused;
+use crate::Scene;
 
-/// Why a scene could not be written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ExportError {
-    /// A file cannot be written; nothing is left behind.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// Complete files could not be renamed.
-    #[error(transparent)]
-    Publish(#[from] PublishError),
-    /// The file extension is not that of a format that can be written.
-    #[error("`.{extension}` is not a format that can be written, {}; use the extension .toml or .glb", path.display())]
-    UnknownFormat {
-        /// The file.
-        path: PathBuf,
-        /// The extension without the dot; may be empty.
-        extension: String,
-    },
-    /// A GLB file counts its bytes in 32 bits.
-    #[error("the scene takes {bytes} bytes, {}; a GLB file can hold 4 GiB: split the scene", path.display())]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// Size that the file would have in bytes.
-        bytes: usize,
-    },
-}
+pub use error::ExportError;
+pub use info::{AnimationInfo, BoundsInfo, CameraInfo, LightInfo, SceneInfo};
 
 impl Scene {
     /// Writes the scene as `.toml` (with `NAME.mesh.glb` next to it) or `.glb`.
@@ -93,20 +69,4 @@ impl Scene {
             _ => Err(ExportError::UnknownFormat { path: path.to_owned(), extension }),
         }
     }
-}
-
-/// The lights that are written: all but those of lamps, which are made again from their surfaces.
-fn own_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
-    scene.lights.iter().filter(|light| !light.lamp)
-}
-
-/// The second half side of a rectangle, turned so that u × v is the side to which it shines.
-fn toward_surface(light: &Light, half_u: Vec3, half_v: Vec3) -> Vec3 {
-    let is_turned = light.surface.is_some_and(|normal| half_u.cross(half_v).dot(normal) < 0.0);
-    if is_turned { -half_v } else { half_v }
-}
-
-/// The content of a file cannot be made.
-fn refused(path: &Path, reason: io::Error) -> ExportError {
-    WriteError::Data { path: path.to_owned(), reason }.into()
 }

@@ -10,7 +10,8 @@ use glam::{Affine2, Vec2};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use serde_json::{Value, json};
 
-use crate::{Scene, Texture, TextureUse, Wrap, formats::gltf::affine};
+use crate::formats::gltf::affine;
+use crate::{Scene, Texture, TextureUse, Wrap};
 
 /// The textures of a scene, as stored in a GLB.
 #[derive(Default)]

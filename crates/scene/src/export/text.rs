@@ -2,20 +2,17 @@
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::{own_lights, toward_surface};
-use crate::{
-    Camera, Falloff, Fov, Light, LightKind, Projection, Scene, Weight,
-    formats::toml::{
-        schema::{
-            AmbientEntry, CameraEntry, Color, FalloffName, LightEntry, LightKindName, LightMeshEntry, MeshEntry,
-            ProjectionName, SceneFile, WeightName,
-        },
-        spanned::Spanned,
-        upright,
-    },
-    info::shortest,
-    light::LARGEST_ANGLE,
+use super::lights::{own_lights, toward_surface};
+use crate::export::info::shortest;
+use crate::formats::toml::schema::{
+    AmbientEntry, CameraEntry, FalloffName, LightEntry, LightKindName, LightMeshEntry, MeshEntry, ProjectionName,
+    SceneFile, WeightName,
 };
+use crate::formats::toml::spanned::Spanned;
+use crate::formats::toml::values::Color;
+use crate::model::light::LARGEST_ANGLE;
+use crate::model::transforms::upright;
+use crate::{Camera, Falloff, Fov, Light, LightKind, Projection, Scene, Weight};
 
 /// The text of a scene file whose triangles are in `mesh_file`.
 pub(super) fn encode(scene: &Scene, mesh_file: &str) -> Result<String, toml::ser::Error> {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use memchr::memchr;
 
-use crate::quote::quote;
+use crate::build::quote::quote;
 
 /// Number of bytes in which the characters of a quotation are found.
 const QUOTED: usize = 256;

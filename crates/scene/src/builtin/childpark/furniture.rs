@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::Paints;
+use super::paints::Paints;
 use crate::builtin::parts::{Open, Paint, Parts};
 
 /// A bench that faces +Z: slats on two cast feet.

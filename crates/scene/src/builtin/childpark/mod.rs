@@ -2,43 +2,23 @@
 
 mod equipment;
 mod furniture;
+mod paints;
 
 use glam::{Vec2, Vec3};
 
+use self::paints::{Paints, paints};
+use super::composition::Composition;
 use super::foliage::{Leaves, blade, blossom};
 use super::lights::{self, Lamp};
 use super::math::{Random, around, ease, srgb};
+use super::options::BuiltinOptions;
 use super::parts::{Paint, Palette, Parts, Place};
 use super::plants::{Tree, bush};
 use super::surfaces::bezier;
-use super::{BuiltinOptions, Composition};
-use crate::Scene;
+use crate::{Light, Scene};
 
 /// Number of triangles up to which the meadow is filled with blades of grass.
 const TRIANGLES: usize = 27_000;
-
-struct Paints {
-    lawn: Paint,
-    path: Paint,
-    rubber: Paint,
-    sand: Paint,
-    castle: Paint,
-    timber: Paint,
-    plank: Paint,
-    steel: Paint,
-    iron: Paint,
-    white: Paint,
-    red: Paint,
-    blue: Paint,
-    yellow: Paint,
-    green: Paint,
-    chute: Paint,
-    bark: Paint,
-    shade: Paint,
-    foliage: [Paint; 3],
-    autumn: [Paint; 3],
-    grass: [Paint; 3],
-}
 
 /// The scene *Childpark*: 27 000 triangles, 2 lights, 160 × 120 × 140 units. The thesis uses the light-mesh step h = 1.
 pub fn childpark(options: &BuiltinOptions) -> Scene {
@@ -70,37 +50,12 @@ pub fn childpark(options: &BuiltinOptions) -> Scene {
     .finish()
 }
 
-fn lights(options: &BuiltinOptions) -> Vec<crate::Light> {
+fn lights(options: &BuiltinOptions) -> Vec<Light> {
     let lamps = [
         Lamp { position: Vec3::new(-70.0, 150.0, 78.0), share: 0.74, tint: Vec3::new(1.0, 0.95, 0.85) },
         Lamp { position: Vec3::new(85.0, 110.0, 90.0), share: 0.26, tint: Vec3::new(0.88, 0.94, 1.0) },
     ];
     lights::place(&lamps, Vec3::ZERO, 1.15, options.lights_or(2), options.spread_or(6.0))
-}
-
-fn paints(palette: &mut Palette) -> Paints {
-    Paints {
-        lawn: palette.matt("lawn", srgb(0x8fb355)),
-        path: palette.matt("path", srgb(0xd8c8a4)),
-        rubber: palette.matt("rubber", srgb(0xc98a5b)),
-        sand: palette.matt("sand", srgb(0xeed9a2)),
-        castle: palette.matt("wet sand", srgb(0xd9b878)),
-        timber: palette.matt("timber", srgb(0xa9794c)),
-        plank: palette.matt("plank", srgb(0xc79460)),
-        steel: palette.glossy("steel", srgb(0xb4bac0), 0.25, 40.0),
-        iron: palette.glossy("iron", srgb(0x4a5560), 0.15, 30.0),
-        white: palette.matt("white paint", srgb(0xf2efe6)),
-        red: palette.glossy("red paint", srgb(0xd8412f), 0.2, 40.0),
-        blue: palette.glossy("blue paint", srgb(0x2f78c4), 0.2, 40.0),
-        yellow: palette.glossy("yellow paint", srgb(0xf4bf2c), 0.2, 40.0),
-        green: palette.glossy("green paint", srgb(0x3f8a5a), 0.15, 40.0),
-        chute: palette.glossy("chute", srgb(0x35a0c8), 0.35, 30.0),
-        bark: palette.matt("bark", srgb(0x7d5f47)),
-        shade: palette.matt("crown shade", srgb(0x4c7a38)),
-        foliage: [0x5f9440, 0x6ea548, 0x83b653].map(|hex| palette.matt("foliage", srgb(hex))),
-        autumn: [0x9cab45, 0xb5b84c, 0x8aa542].map(|hex| palette.matt("light foliage", srgb(hex))),
-        grass: [0x7fae4a, 0x94bd57, 0x6f9e44].map(|hex| palette.matt("grass", srgb(hex))),
-    }
 }
 
 /// The lawn is level where children play and rises to a hill behind.

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
+use super::plan::{BEDS, Bed, FOUNTAIN, HALF, Paints, TRIANGLES};
 use super::stonework::path_points;
-use super::{BEDS, Bed, FOUNTAIN, HALF, Paints, TRIANGLES};
 use crate::builtin::foliage::{Leaves, blade, blossom};
 use crate::builtin::math::{Random, around};
 use crate::builtin::parts::{Paint, Parts, Place};

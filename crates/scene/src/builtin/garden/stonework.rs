@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{FOUNTAIN, HALF, Paints};
+use super::plan::{FOUNTAIN, HALF, Paints};
 use crate::builtin::math::{Random, around};
 use crate::builtin::parts::{Open, Parts, Place};
 use crate::builtin::surfaces::bezier;

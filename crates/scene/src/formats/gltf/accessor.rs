@@ -11,7 +11,8 @@ use super::{
     document::{Accessor, Document, Sparse},
     strided::{Component, Strided},
 };
-use crate::{LoadError, quote::quote};
+use crate::LoadError;
+use crate::build::quote::quote;
 
 /// Which elements of an accessor are read: those with these indices, ascending and in range, or all. A small part of a large
 /// accessor that many share is thus no more work than its size.

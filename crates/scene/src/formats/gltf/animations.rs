@@ -14,11 +14,9 @@ use super::{
     document::{Animation, AnimationSampler, Channel},
     left_out::LeftOut,
 };
-use crate::{
-    LoadError,
-    animation::track::{Interpolation, Kind, Track},
-    quote::quote,
-};
+use crate::LoadError;
+use crate::build::quote::quote;
+use crate::model::animation::track::{Interpolation, Kind, Track};
 
 /// The motion of a node.
 #[derive(Default)]

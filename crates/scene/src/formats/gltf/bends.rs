@@ -9,13 +9,9 @@ use super::{
     container::malformed,
     document::{Primitive, Target},
 };
-use crate::{
-    LoadError,
-    animation::{
-        parts::{self, Influences, Morph, Skin},
-        track::Track,
-    },
-};
+use crate::LoadError;
+use crate::model::animation::parts::{self, Influences, Morph, Skin};
+use crate::model::animation::track::Track;
 
 /// What bends the mesh of a node.
 #[derive(Default)]

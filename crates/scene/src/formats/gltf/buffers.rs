@@ -11,14 +11,16 @@ use super::{
     document::{BufferView, Document},
     uri::{self, Uri},
 };
-use crate::{LoadError, border::Border, error::Place};
+use crate::LoadError;
+use crate::build::error::Place;
+use crate::build::file_access::FileAccess;
 
 /// All buffers of a file.
 pub(super) struct Buffers<'a> {
     path: &'a Path,
     views: &'a [BufferView],
     buffers: Vec<Buffer<'a>>,
-    border: Border,
+    access: FileAccess,
     bytes_read: Cell<usize>,
 }
 
@@ -44,13 +46,13 @@ impl<'a> Buffers<'a> {
         path: &'a Path,
         document: &'a Document,
         bin: Option<&'a [u8]>,
-        border: &Border,
+        access: &FileAccess,
     ) -> Result<Buffers<'a>, LoadError> {
         let buffer = |(index, buffer): (usize, &'a super::document::Buffer)| {
             let source = match (buffer.uri.as_deref().map(Uri::new), bin) {
                 (Some(Uri::Data(data)), _) => Source::Data(data),
                 (Some(Uri::File(name)), _) => {
-                    border.path_beside(path, &name)?;
+                    access.path_beside(path, &name)?;
                     Source::File(name)
                 }
                 (None, Some(bin)) if index == 0 => Source::Chunk(bin),
@@ -59,7 +61,7 @@ impl<'a> Buffers<'a> {
             Ok(Buffer { source, length: buffer.byte_length, bytes: OnceCell::new() })
         };
         let buffers = document.buffers.iter().enumerate().map(buffer).collect::<Result<_, _>>()?;
-        Ok(Buffers { path, views: &document.buffer_views, buffers, border: border.clone(), bytes_read: Cell::new(0) })
+        Ok(Buffers { path, views: &document.buffer_views, buffers, access: access.clone(), bytes_read: Cell::new(0) })
     }
 
     /// The bytes of a view, with its stride if it has one.
@@ -86,14 +88,14 @@ impl<'a> Buffers<'a> {
         if let Some(bytes) = buffer.bytes.get() {
             return Ok(bytes);
         }
-        let bytes = buffer.read(self.path, index, &self.border)?;
+        let bytes = buffer.read(self.path, index, &self.access)?;
         self.bytes_read.update(|sum| sum + bytes.len());
         Ok(buffer.bytes.get_or_init(|| bytes))
     }
 }
 
 impl<'a> Buffer<'a> {
-    fn read(&self, path: &Path, index: u32, border: &Border) -> Result<Cow<'a, [u8]>, LoadError> {
+    fn read(&self, path: &Path, index: u32, access: &FileAccess) -> Result<Cow<'a, [u8]>, LoadError> {
         let bytes = match &self.source {
             Source::Chunk(bytes) => Cow::Borrowed(*bytes),
             Source::Data(data) => Cow::Owned(
@@ -103,7 +105,7 @@ impl<'a> Buffer<'a> {
             Source::File(name) => {
                 // A file may contain more than this buffer.
                 let read =
-                    border.read_start(path, name, self.length).map_err(|error| error.named_by(Place::file(path)));
+                    access.read_start(path, name, self.length).map_err(|error| error.named_by(Place::file(path)));
                 Cow::Owned(read?.1)
             }
             Source::Nothing => return Err(malformed(path, format!("buffer {index} has no data"))),

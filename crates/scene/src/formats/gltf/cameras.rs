@@ -10,7 +10,8 @@ use super::{
     document,
     extras::{self, CameraExtras},
 };
-use crate::{Camera, Fov, LoadError, Projection, camera::LARGEST_SHIFT};
+use crate::model::camera::LARGEST_SHIFT;
+use crate::{Camera, Fov, LoadError, Projection};
 
 /// A camera in the coordinates of a node.
 pub(super) fn camera(name: String, Lens { projection, shift }: Lens) -> Camera {

@@ -8,12 +8,10 @@ use super::{
     document::{Asset, Document},
     integers::as_integers,
 };
-use crate::{
-    LoadError,
-    error::Place,
-    quote::{abridged, quote},
-    warnings::Warnings,
-};
+use crate::LoadError;
+use crate::build::error::Place;
+use crate::build::quote::{abridged, quote};
+use crate::build::warnings::Warnings;
 
 const MAGIC: &[u8] = b"glTF";
 /// Magic, version, length.

@@ -11,8 +11,10 @@ use super::{
     nodes,
     uri::{self, Uri},
 };
-use crate::formats::colors::linear;
-use crate::{Environment, LoadError, Surroundings, Texture, Up, draft::Draft, texture::Undecodable, texture::decode};
+use crate::build::draft::Draft;
+use crate::build::textures::decode::{Undecodable, decode};
+use crate::model::colors::linear;
+use crate::{Environment, LoadError, Surroundings, Texture, Up};
 
 /// The columns of a panorama for each texel of a face's side.
 const COLUMNS: u32 = 4;
@@ -74,7 +76,7 @@ fn surroundings(
     }
     let size = [COLUMNS * side, COLUMNS / 2 * side];
     let texels = u64::from(size[0]) * u64::from(size[1]);
-    draft.border.budget.check(BYTES * texels).map_err(|short| {
+    draft.access.budget.check(BYTES * texels).map_err(|short| {
         let what = format!("an environment of {}x{} texels", size[0], size[1]);
         Unusable::Load(LoadError::Memory { path: path.to_owned(), what, short })
     })?;
@@ -108,7 +110,7 @@ fn face(
         (None, None) => return Err(odd("it has no data".to_owned())),
     };
     let name = format!("image {index}");
-    decode(&name, bytes, draft.border.budget).map_err(|error| match error {
+    decode(&name, bytes, draft.access.budget).map_err(|error| match error {
         Undecodable::Odd(reason) => odd(reason),
         Undecodable::TooLarge { size: [width, height], short } => {
             let what = format!("a texture of {width}x{height} texels");

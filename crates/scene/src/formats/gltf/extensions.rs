@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use super::document::Document;
-use crate::{LoadError, draft::Draft, quote::list};
+use crate::LoadError;
+use crate::build::draft::Draft;
+use crate::build::quote::list;
 
 /// Extensions that are read. A file may require them.
 const KNOWN: [&str; 11] = [

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::value::RawValue;
 
 use super::container::malformed;
-use crate::{Dielectric, Facets, LoadError, Material, quote::abridged};
+use crate::build::quote::abridged;
+use crate::{Dielectric, Facets, LoadError, Material};
 
 /// Of a material: the coefficients that metallic-roughness cannot represent.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::nodes::Placed;
-use crate::draft::Draft;
+use crate::build::draft::Draft;
 
 /// How often each kind occurred.
 #[derive(Default)]

@@ -12,10 +12,8 @@ use super::{
     document::{self, Spot},
     extras::{LightExtras, ShapeExtras},
 };
-use crate::{
-    Falloff, Light, LightKind, LoadError,
-    light::{usable_angle, usable_radius},
-};
+use crate::model::light::{usable_angle, usable_radius};
+use crate::{Falloff, Light, LightKind, LoadError};
 
 /// Light number `index` of the document in the coordinates of a node, still without a name. `None` if its type is unknown.
 pub(super) fn read(

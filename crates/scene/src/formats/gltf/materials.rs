@@ -11,10 +11,9 @@ use super::{
     material,
     picture::Pictures,
 };
-use crate::{
-    LoadError, Material, NormalMap, Opacity, OpacityChannel, OpacityMode, TextureUse,
-    draft::{Draft, Placement},
-};
+use crate::build::draft::Draft;
+use crate::build::placement::Placement;
+use crate::{LoadError, Material, NormalMap, Opacity, OpacityChannel, OpacityMode, TextureUse};
 
 /// Materials by their number in the file.
 #[derive(Default)]

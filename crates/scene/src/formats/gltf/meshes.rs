@@ -22,14 +22,12 @@ use super::{
     materials::{Chosen, Materials},
     rigged::Rigged,
 };
-use crate::{
-    Affine, LoadError, MeshPart, OwnedPositions,
-    animation::parts::{Hold, Shape},
-    builder::mirrors,
-    draft::Draft,
-    instances::MOST_INSTANCED,
-    mesh_part::Room,
-};
+use crate::build::draft::Draft;
+use crate::build::mesh_part::Room;
+use crate::model::animation::parts::{Hold, Shape};
+use crate::model::instances::MOST_INSTANCED;
+use crate::model::transforms::mirrors;
+use crate::{Affine, LoadError, MeshPart, OwnedPositions};
 
 /// How a primitive's vertices form triangles, by its number in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

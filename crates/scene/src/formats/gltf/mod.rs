@@ -62,12 +62,11 @@ use self::{
     uri::Uri,
     views::Views,
 };
-use crate::{
-    LightMeshDefaults, LoadError,
-    draft::{Draft, Placement},
-    quote::quote,
-    usable::is_place,
-};
+use crate::build::draft::Draft;
+use crate::build::placement::Placement;
+use crate::build::quote::quote;
+use crate::model::transforms::is_place;
+use crate::{LightMeshDefaults, LoadError};
 
 /// Reads a glTF or GLB file into `draft`.
 pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
@@ -75,7 +74,7 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &m
     let document = container.parse(path, &mut draft.warnings)?;
     extensions::check(path, &document, draft)?;
     refer(path, &document, draft);
-    let buffers = Buffers::new(path, &document, container.bin, &draft.border)?;
+    let buffers = Buffers::new(path, &document, container.bin, &draft.access)?;
     let accessors = Accessors { path, document: &document, buffers: &buffers };
     let strides_of_zero = document.buffer_views.iter().filter(|view| view.byte_stride == Some(0)).count();
     let mut left_out = LeftOut { strides_of_zero, ..LeftOut::default() };

@@ -8,7 +8,9 @@ use super::{
     container::malformed,
     document::{Document, Node},
 };
-use crate::{LoadError, Place, animation::rig, draft::Draft};
+use crate::build::draft::Draft;
+use crate::model::animation::rig;
+use crate::{LoadError, Place};
 
 /// A node with its transform to world coordinates.
 pub(super) struct Placed<'a> {

@@ -10,7 +10,8 @@ use super::{
     document::{Document, TextureInfo},
     uri::{self, Uri},
 };
-use crate::{TextureUse, Wrap, draft::Draft};
+use crate::build::draft::Draft;
+use crate::{TextureUse, Wrap};
 
 /// The images of a file, each decoded on first use.
 pub(super) struct Pictures<'a> {

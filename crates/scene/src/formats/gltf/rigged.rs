@@ -11,15 +11,12 @@ use super::{
     left_out::LeftOut,
     nodes::{self, Placed},
 };
-use crate::{
-    LoadError,
-    animation::{
-        parts::Skin,
-        rig::{Node, Place},
-        track::Track,
-    },
-    draft::{Draft, Placement},
-};
+use crate::LoadError;
+use crate::build::draft::Draft;
+use crate::build::placement::Placement;
+use crate::model::animation::parts::Skin;
+use crate::model::animation::rig::{Node, Place};
+use crate::model::animation::track::Track;
 
 /// The nodes of a file in the rig of the scene.
 #[derive(Default)]

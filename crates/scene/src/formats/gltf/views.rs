@@ -6,11 +6,9 @@ use super::{
     cameras, cameras::Lens, container::malformed, document::Document, extras, extras::LightExtras, left_out::LeftOut,
     lights, nodes::Placed, rigged::Rigged,
 };
-use crate::{
-    Camera, Light, LoadError,
-    animation::views::{Carried, Motion, numbered},
-    draft::Draft,
-};
+use crate::build::draft::Draft;
+use crate::model::animation::views::{Carried, Motion, numbered};
+use crate::{Camera, Light, LoadError};
 
 /// Maximum length of a name in characters; longer ones are cut.
 const LONGEST_NAME: usize = 200;

@@ -1,6 +1,6 @@
 //! The corners of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1, or backwards from −1.
 
-use super::parse::Fault;
+use super::error::Fault;
 use crate::formats::{
     text::{quoted, words},
     vertices::{Corner, NONE},

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use glam::{Affine2, Mat2, Vec2};
 
-use crate::{NormalMap, OpacityChannel, TextureUse, Wrap, draft::Draft, formats::text::number};
+use crate::build::draft::Draft;
+use crate::formats::text::number;
+use crate::{NormalMap, OpacityChannel, TextureUse, Wrap};
 
 /// A texture of a material.
 #[derive(Debug, PartialEq)]

@@ -14,6 +14,7 @@
 //!   above the first `s` of a file are in no group, if there is one; without any, all are in the same.
 //! - Points, lines and free-form surfaces are ignored with a warning; groups of other kinds have no effect.
 
+mod error;
 mod face;
 pub(crate) mod lines;
 pub(crate) mod map;
@@ -30,16 +31,15 @@ use glam::{DVec3, Vec2, Vec3};
 
 use self::parse::{Content, Points};
 use super::{
-    colors, text,
+    text,
     vertices::{Corner, NONE},
 };
-use crate::{
-    LoadError, Objects,
-    draft::{Draft, Placement},
-    error::Place,
-    loaded_mesh::LoadedMesh,
-    quote::list,
-};
+use crate::build::draft::Draft;
+use crate::build::loaded_mesh::LoadedMesh;
+use crate::build::placement::Placement;
+use crate::build::quote::list;
+use crate::model::colors;
+use crate::{LoadError, Objects};
 
 /// Reads an OBJ file and its material libraries into `draft`.
 pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
@@ -129,9 +129,4 @@ fn linear_colors(encoded: Vec<Vec3>) -> Vec<Vec3> {
     let scale = if largest > 1.0 { 255.0 } else { 1.0 };
     let linear = |color: Vec3| if color.is_nan() { Vec3::ONE } else { colors::linear(color / scale) };
     encoded.into_iter().map(linear).collect()
-}
-
-/// The error for a line that cannot be used.
-fn malformed(path: &Path, line: usize, problem: String, remedy: &str) -> LoadError {
-    LoadError::Malformed { place: Place::line(path, line).into(), problem, remedy: remedy.to_owned() }
 }

@@ -9,19 +9,15 @@ use std::{
 use glam::{DVec3, Vec3};
 
 use super::{
+    error::malformed,
     lines::Lines,
-    malformed,
     map::{Map, unquoted},
 };
-use crate::{
-    Dielectric, Facets, LoadError, Material, NormalMap, Opacity, OpacityChannel, TextureUse,
-    draft::Draft,
-    error::Place,
-    formats::{
-        notes::Notes,
-        text::{decoded, number, odd_number, quoted, split_word, with_line_feeds, words},
-    },
-};
+use crate::build::draft::Draft;
+use crate::build::error::Place;
+use crate::formats::notes::Notes;
+use crate::formats::text::{decoded, number, odd_number, quoted, split_word, with_line_feeds, words};
+use crate::{Dielectric, Facets, LoadError, Material, NormalMap, Opacity, OpacityChannel, TextureUse};
 
 /// One material as its library describes it.
 #[derive(Default)]
@@ -115,7 +111,7 @@ fn file_names(obj: &Path, line: &str, draft: &Draft) -> Vec<String> {
     by_ending.extend((!name.is_empty()).then_some(name));
     let whole = vec![line.to_owned()];
     let by_blank: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
-    let is_there = |name: &String| draft.border.path_beside(obj, name).is_ok_and(|path| path.is_file());
+    let is_there = |name: &String| draft.access.path_beside(obj, name).is_ok_and(|path| path.is_file());
     let found = [whole, by_ending.clone(), by_blank].into_iter().find(|names| names.iter().all(is_there));
     found.unwrap_or(by_ending)
 }

@@ -8,29 +8,22 @@ use std::{
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{
+    error::{Fault, malformed},
     face::{self, Counts},
     lines::Lines,
-    malformed,
     smoothing::Smoothing,
 };
-use crate::{
-    LoadError, Objects,
-    formats::{
-        notes::Notes,
-        polygon::Cutter,
-        text::{decoded, number, odd_number, quoted, split_word, words},
-        vertices::{Corner, Vertices},
-    },
-};
+use crate::formats::notes::Notes;
+use crate::formats::polygon::Cutter;
+use crate::formats::text::{decoded, number, odd_number, quoted, split_word, words};
+use crate::formats::vertices::{Corner, Vertices};
+use crate::{LoadError, Objects};
 
 /// Maximum number of values read from a position: three coordinates and a colour.
 const MOST_NUMBERS: usize = 6;
 
 /// First words of positions, texture coordinates and normals.
 const POINTS: [&[u8]; 3] = [b"v", b"vt", b"vn"];
-
-/// The problem with a line, and the remedy.
-pub(super) struct Fault(pub(super) String, pub(super) &'static str);
 
 /// The data that faces refer to, in the file's order.
 #[derive(Default)]

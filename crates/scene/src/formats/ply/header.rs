@@ -4,14 +4,10 @@ use std::path::Path;
 
 use memchr::memchr;
 
-use super::malformed;
-use crate::{
-    LoadError,
-    formats::{
-        notes::Notes,
-        text::{decoded, quoted, split_word},
-    },
-};
+use super::error::malformed;
+use crate::LoadError;
+use crate::formats::notes::Notes;
+use crate::formats::text::{decoded, quoted, split_word};
 
 /// Some editors write it in front of a text.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";

@@ -9,6 +9,7 @@
 //! - A face's colour replaces that of its vertices: vertices are split where faces of different colours meet.
 //! - An image named by `comment TextureFile` colours vertices with texture coordinates.
 
+mod error;
 mod face;
 mod header;
 mod rows;
@@ -19,6 +20,7 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 
 use self::{
+    error::malformed,
     face::Faces,
     header::{Element, Encoding, Header},
     rows::{Fault, Row, Rows},
@@ -28,13 +30,11 @@ use super::{
     notes::Notes,
     text::{line_of, quoted},
 };
-use crate::{
-    LoadError, Material, Objects, TextureUse,
-    draft::{Draft, Placement},
-    error::Place,
-    loaded_mesh::LoadedMesh,
-    quote::{self, list},
-};
+use crate::build::draft::Draft;
+use crate::build::loaded_mesh::LoadedMesh;
+use crate::build::placement::Placement;
+use crate::build::quote::{self, list};
+use crate::{LoadError, Material, Objects, TextureUse};
 
 /// Names of the list that contains a face's or strip's vertices.
 const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -219,9 +219,4 @@ impl Reader<'_> {
         let line = (self.encoding == Encoding::Ascii).then(|| line_of(self.bytes, self.rows.at.saturating_sub(1)));
         malformed(self.path, line, problem, "export it again, or copy it again if it is truncated")
     }
-}
-
-fn malformed(path: &Path, line: Option<usize>, problem: String, remedy: &str) -> LoadError {
-    let place = line.map_or_else(|| Place::file(path), |line| Place::line(path, line));
-    LoadError::Malformed { place: place.into(), problem, remedy: remedy.to_owned() }
 }

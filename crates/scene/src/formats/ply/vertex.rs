@@ -6,7 +6,7 @@ use super::{
     header::{Element, Shape},
     rows::Row,
 };
-use crate::formats::colors::linear;
+use crate::model::colors::linear;
 
 /// Vertices in the file's order; attributes for all of them or for none.
 #[derive(Debug, Default)]

@@ -8,15 +8,12 @@ use std::path::Path;
 use glam::DVec3;
 use memchr::memchr;
 
-use super::{BEGINNING, Soup, malformed};
-use crate::{
-    LoadError,
-    formats::{
-        notes::Notes,
-        polygon::Cutter,
-        text::{line_of, number, odd_number, quoted},
-    },
-};
+use super::error::malformed;
+use super::soup::{BEGINNING, Soup};
+use crate::LoadError;
+use crate::formats::notes::Notes;
+use crate::formats::polygon::Cutter;
+use crate::formats::text::{line_of, number, odd_number, quoted};
 
 /// A facet's first keyword.
 const FACET: &[u8] = b"facet";

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::{Soup, malformed};
+use super::error::malformed;
+use super::soup::Soup;
 use crate::LoadError;
 
 /// Bytes before the count.

@@ -12,19 +12,17 @@
 
 mod ascii;
 mod binary;
+mod error;
+mod soup;
 
 use std::path::Path;
 
+use self::soup::{BEGINNING, Soup};
 use super::text::with_line_feeds;
-use crate::{
-    LoadError, Objects, Position,
-    draft::{Draft, Placement},
-    error::Place,
-    loaded_mesh::LoadedMesh,
-};
-
-/// Number of bytes at the start of a text in which a keyword must be found.
-const BEGINNING: usize = 4096;
+use crate::build::draft::Draft;
+use crate::build::loaded_mesh::LoadedMesh;
+use crate::build::placement::Placement;
+use crate::{LoadError, Objects, Position};
 
 /// Reads an STL file into `draft`.
 pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
@@ -35,15 +33,6 @@ pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft
         let soup = binary::read(path, &bytes)?;
         hand_over(path, soup, bytes, placement, draft)
     }
-}
-
-/// Triangles with their own vertices.
-#[derive(Debug, Default)]
-struct Soup<P> {
-    positions: Vec<P>,
-    triangles: Vec<[u32; 3]>,
-    /// Complete sentences.
-    warnings: Vec<String>,
 }
 
 fn hand_over<P: Position>(
@@ -81,10 +70,4 @@ fn is_text(bytes: &[u8]) -> bool {
     } else {
         holds(b"facet") && holds(b"vertex") && !beginning.contains(&0)
     }
-}
-
-fn malformed(path: &Path, line: Option<usize>, problem: String) -> LoadError {
-    let place = line.map_or_else(|| Place::file(path), |line| Place::line(path, line));
-    let remedy = "export it again, or copy it again if it is truncated".to_owned();
-    LoadError::Malformed { place: place.into(), problem, remedy }
 }

@@ -3,11 +3,13 @@
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{
-    check::{Source, unit},
+    check::Source,
     schema::{CameraEntry, ProjectionName},
     spanned::Spanned,
 };
-use crate::{Camera, Fov, LoadError, Projection, warnings::Warnings};
+use crate::build::warnings::Warnings;
+use crate::model::transforms::{unit, upright};
+use crate::{Camera, Fov, LoadError, Projection};
 
 /// Default vertical field of view, degrees.
 const DEFAULT_VFOV: f32 = 50.0;
@@ -92,15 +94,4 @@ fn projection(source: &Source, table: &Spanned<CameraEntry>) -> Result<Projectio
         // Of two angles the vertical one is used.
         (vfov, _) => Fov::Vertical(vfov.unwrap_or(DEFAULT_VFOV)),
     }))
-}
-
-/// `up` made perpendicular to the unit vector `direction`, or unchanged if it is so to `f32` precision; `None` if they are
-/// parallel.
-pub(crate) fn upright(direction: DVec3, up: DVec3) -> Option<DVec3> {
-    const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
-    if up.dot(direction).abs() <= ROUNDING {
-        return Some(up);
-    }
-    let side = direction.cross(up);
-    (side.length() > ROUNDING).then(|| side.cross(direction).normalize())
 }

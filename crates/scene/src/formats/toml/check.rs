@@ -4,17 +4,16 @@ use std::{collections::HashMap, fmt::Debug, ops::Range, path::Path};
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use super::schema::{Color, Number, Text, Vector};
 use super::spanned::Spanned;
-use crate::{
-    LoadError,
-    camera::LARGEST_SHIFT,
-    error::Place,
-    quote::{abridged, quote},
-};
+use super::values::{Color, Number, Text, Vector};
+use crate::LoadError;
+use crate::build::error::Place;
+use crate::build::quote::{abridged, quote};
+use crate::model::camera::LARGEST_SHIFT;
+use crate::model::transforms::{LARGEST_COORDINATE, unit};
 
 /// Larger numbers are treated as typing errors: their squares must fit into `f32`.
-const LARGEST: f64 = crate::draft::LARGEST_COORDINATE;
+const LARGEST: f64 = LARGEST_COORDINATE;
 
 /// The file being read: converts positions in the text into lines.
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +96,7 @@ impl Source<'_> {
     pub(super) fn segments(&self, value: &Option<Spanned<i64>>) -> Result<u32, LoadError> {
         const RANGE: std::ops::RangeInclusive<i64> = 3..=2048;
         match value {
-            None => Ok(crate::shapes::DEFAULT_SEGMENTS),
+            None => Ok(crate::build::shapes::DEFAULT_SEGMENTS),
             Some(value) if RANGE.contains(value.get_ref()) => Ok(*value.get_ref() as u32),
             Some(value) => {
                 let remedy = format!("give a whole number from {} to {}", RANGE.start(), RANGE.end());
@@ -170,13 +169,6 @@ impl Source<'_> {
             }
         })
     }
-}
-
-/// The vector at unit length, or unchanged if it has that length to `f32` precision, so that written values are read back
-/// unchanged. `None` if it has no direction.
-pub(crate) fn unit(vector: DVec3) -> Option<DVec3> {
-    const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
-    if (vector.length_squared() - 1.0).abs() <= ROUNDING { Some(vector) } else { vector.try_normalize() }
 }
 
 /// An error of toml and serde in our words.

@@ -3,11 +3,14 @@
 use glam::{DVec3, Vec3};
 
 use super::{
-    check::{Source, present, required, unit},
-    schema::{FalloffName, LightEntry, LightKindName, Number},
+    check::{Source, present, required},
+    schema::{FalloffName, LightEntry, LightKindName},
     spanned::Spanned,
+    values::Number,
 };
-use crate::{Falloff, Light, LightKind, LoadError, light::LARGEST_ANGLE};
+use crate::model::light::LARGEST_ANGLE;
+use crate::model::transforms::unit;
+use crate::{Falloff, Light, LightKind, LoadError};
 
 /// Default half-angle of a spot light, degrees.
 const DEFAULT_OUTER: f64 = 45.0;

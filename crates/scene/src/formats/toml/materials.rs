@@ -6,12 +6,12 @@ use glam::{Affine2, DVec2, Vec2, Vec3};
 
 use super::{
     check::Source,
-    schema::{Color, MaterialEntry, Number, Text, TextureScale, TextureWrap, WrapName},
+    schema::{MaterialEntry, TextureScale, TextureWrap, WrapName},
     spanned::Spanned,
+    values::{Color, Number, Text},
 };
-use crate::{
-    Dielectric, Facets, LoadError, Material, NormalMap, Opacity, OpacityChannel, TextureUse, Wrap, draft::Draft,
-};
+use crate::build::draft::Draft;
+use crate::{Dielectric, Facets, LoadError, Material, NormalMap, Opacity, OpacityChannel, TextureUse, Wrap};
 
 /// Adds the file's materials and returns the index of each name.
 pub(super) fn read(

@@ -14,15 +14,17 @@ mod publish;
 pub(crate) mod schema;
 mod sky;
 pub(crate) mod spanned;
+pub(crate) mod values;
 
 use std::path::Path;
 
-pub(crate) use cameras::upright;
-pub(crate) use check::unit;
 use check::{Source, syntax_error};
 use schema::{AmbientEntry, LightMeshEntry, SceneFile, WeightName};
+use values::Number;
 
-use crate::{LightMeshDefaults, LoadError, Weight, draft::Draft, error::Place};
+use crate::build::draft::Draft;
+use crate::build::error::Place;
+use crate::{LightMeshDefaults, LoadError, Weight};
 
 /// Reads a scene file into `draft`.
 pub(crate) fn read(path: &Path, bytes: &[u8], draft: &mut Draft) -> Result<(), LoadError> {
@@ -77,7 +79,7 @@ fn read_ambient(source: &Source, entry: &AmbientEntry, draft: &mut Draft) -> Res
 }
 
 fn read_light_mesh(source: &Source, entry: &LightMeshEntry) -> Result<LightMeshDefaults, LoadError> {
-    let positive = |key, value: &Option<schema::Number>| -> Result<Option<f32>, LoadError> {
+    let positive = |key, value: &Option<Number>| -> Result<Option<f32>, LoadError> {
         value.as_ref().map(|value| source.positive(key, value).map(|number| number as f32)).transpose()
     };
     Ok(LightMeshDefaults {

@@ -13,19 +13,15 @@ use super::{
     check::Source,
     lights,
     motion_schema::{CameraKey, InterpolationName, LightKey, ObjectMotionEntry},
-    parts,
-    schema::{CameraEntry, Color, LightEntry, LightKindName, Number, Scale},
+    schema::{CameraEntry, LightEntry, LightKindName},
     spanned::Spanned,
+    values::{Color, Number, Scale},
 };
-use crate::{
-    Camera, Light, LoadError,
-    animation::{
-        rig::{Node, Place},
-        track::{Interpolation, Kind, Track},
-        views::{Keyed, Motion, numbered},
-    },
-    draft::Draft,
-};
+use crate::build::draft::Draft;
+use crate::model::animation::rig::{Node, Place};
+use crate::model::animation::track::{Interpolation, Kind, Track};
+use crate::model::animation::views::{Keyed, Motion, numbered};
+use crate::{Camera, Light, LoadError};
 
 /// The latest time of a key, seconds: eleven days.
 const LATEST: f64 = 1e6;
@@ -337,7 +333,7 @@ pub(super) fn object(
 
 /// Factors of a key: 0 hides the object.
 fn scale(source: &Source, value: &Spanned<Scale>) -> Result<DVec3, LoadError> {
-    let factors = parts::factors(value.get_ref());
+    let factors = value.get_ref().factors();
     source.all_finite("scale", value, &factors.to_array())?;
     Ok(factors)
 }

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    schema::{Color, Number, Scale, Vector},
     spanned::Spanned,
+    values::{Color, Number, Scale, Vector},
 };
 
 /// `[camera.motion]`: what of the camera changes over time.

@@ -10,16 +10,15 @@ use super::{
     check::{Source, required},
     motion,
     motion_schema::ObjectMotionEntry,
-    schema::{BoxEntry, CylinderEntry, MeshEntry, PlaneEntry, Scale, SceneFile, Text, TriangleEntry, Vector},
+    schema::{BoxEntry, CylinderEntry, MeshEntry, PlaneEntry, SceneFile, TriangleEntry},
     spanned::Spanned,
+    values::{Scale, Text, Vector},
 };
-use crate::{
-    LoadError,
-    builder::mirrors,
-    draft::Draft,
-    open::read_part,
-    shapes::{Shape, tangents},
-};
+use crate::LoadError;
+use crate::build::draft::Draft;
+use crate::build::shapes::{Shape, tangents};
+use crate::formats::models::read_part;
+use crate::model::transforms::mirrors;
 
 /// Default edge of a plane, in diagonals of the rest of the scene.
 const PLANE_DIAGONALS: f64 = 20.0;
@@ -215,7 +214,7 @@ fn read_mesh(
         None => None,
     };
     let read = |transform: DMat4, object: Option<String>, draft: &mut Draft| {
-        let (path, bytes) = draft.border.read_beside(source.path, entry.file.get_ref())?;
+        let (path, bytes) = draft.access.read_beside(source.path, entry.file.get_ref())?;
         read_part(&path, bytes, transform, material, object, draft)
     };
     let may_be_shared = draft.mover.is_none_or(|node| draft.may_hold_shapes(node));
@@ -241,19 +240,11 @@ fn mesh_transform(source: &Source, entry: &MeshEntry) -> Result<DMat4, LoadError
 }
 
 fn scale(source: &Source, value: &Spanned<Scale>) -> Result<DVec3, LoadError> {
-    let factors = factors(value.get_ref());
+    let factors = value.get_ref().factors();
     if factors.to_array().iter().all(|factor| factor.is_finite() && *factor as f32 != 0.0) {
         Ok(factors)
     } else {
         Err(source.refuse("scale", value, "is zero or not finite", "give a factor; a negative one mirrors"))
-    }
-}
-
-/// The factors by axis.
-pub(super) fn factors(scale: &Scale) -> DVec3 {
-    match *scale {
-        Scale::Uniform(factor) => DVec3::splat(factor),
-        Scale::ByAxis(factors) => factors.into(),
     }
 }
 

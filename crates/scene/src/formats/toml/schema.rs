@@ -11,11 +11,8 @@ use super::{
     one_or_many,
     one_or_many::OneOrMany,
     spanned::Spanned,
+    values::{Color, Number, Scale, Text, Vector},
 };
-
-pub(super) type Number = Spanned<f64>;
-pub(super) type Vector = Spanned<[f64; 3]>;
-pub(super) type Text = Spanned<String>;
 
 /// A scene for lightmesh. Lengths are in scene units, angles in degrees, positions in world coordinates.
 #[derive(Debug, Default, Deserialize, JsonSchema, Serialize)]
@@ -98,14 +95,6 @@ pub(crate) struct CameraEntry {
 pub(crate) enum ProjectionName {
     Perspective,
     Orthographic,
-}
-
-/// A number for all channels, or red, green and blue.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize)]
-#[serde(untagged, expecting = "expected a number or [red, green, blue]")]
-pub(crate) enum Color {
-    Grey(f64),
-    Rgb([f64; 3]),
 }
 
 /// `[ambient]`.
@@ -409,14 +398,6 @@ pub(crate) struct MeshEntry {
     /// How it moves in a film.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) motion: Option<ObjectMotionEntry>,
-}
-
-/// One factor, or one per axis.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, Serialize)]
-#[serde(untagged, expecting = "expected a number or [x, y, z]")]
-pub(crate) enum Scale {
-    Uniform(f64),
-    ByAxis([f64; 3]),
 }
 
 /// `[[sphere]]`.

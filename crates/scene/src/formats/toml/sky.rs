@@ -1,9 +1,10 @@
 //! `[sky]` and `[environment]` to what surrounds the scene.
 
 use super::check::{Source, required};
-use super::schema::{EnvironmentEntry, SkyEntry, SkyName, Text, UpName};
+use super::schema::{EnvironmentEntry, SkyEntry, SkyName, UpName};
 use super::spanned::Spanned;
-use crate::draft::Draft;
+use super::values::Text;
+use crate::build::draft::Draft;
 use crate::{Environment, EnvironmentError, LoadError, Moment, Sky, SkyKind, SunPosition, Surroundings, Up};
 
 use glam::Vec3;
@@ -12,7 +13,7 @@ use glam::Vec3;
 pub(super) fn read(source: &Source, table: &Spanned<SkyEntry>) -> Result<Surroundings, LoadError> {
     let entry = table.get_ref();
     refuse_foreign_keys(source, table)?;
-    let color = |key, value: &Option<Spanned<super::schema::Color>>, default: Vec3| {
+    let color = |key, value: &Option<Spanned<super::values::Color>>, default: Vec3| {
         value.as_ref().map_or(Ok(default), |color| source.color(key, color))
     };
     let kind = match entry.kind.get_ref() {
@@ -112,7 +113,7 @@ pub(super) fn panorama(
     draft.refer(source.path, file.get_ref());
     let (path, bytes) =
         draft.read_nearby(source.path, file.get_ref()).map_err(|error| error.named_by(source.place(file.span())))?;
-    let decoded = Environment::decode(&path, &bytes, up(entry.up), draft.border.budget);
+    let decoded = Environment::decode(&path, &bytes, up(entry.up), draft.access.budget);
     let environment = decoded.map_err(|error| match error {
         EnvironmentError::Memory { path, what, short } => LoadError::Memory { path, what, short },
         error => source.refuse("file", file, "cannot be used", &error.to_string()),

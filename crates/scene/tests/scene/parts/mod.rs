@@ -1,7 +1,6 @@
 //! Parts of the crate by themselves.
 
 mod animation;
-mod border;
 mod builder;
 mod builtin;
 mod camera;
@@ -10,6 +9,7 @@ mod draft;
 mod environment;
 mod error;
 mod export;
+mod file_access;
 mod formats;
 mod framing;
 mod geometry_check;
@@ -26,11 +26,11 @@ mod open;
 mod outdoors;
 mod principled;
 mod quote;
+mod sanitize;
 mod shapes;
 mod smooth;
 mod studio;
 mod texture;
 mod up;
-mod usable;
 mod vertices;
 mod warnings;
