@@ -45,6 +45,7 @@ pub mod footprint {
 pub mod gathered {
     pub use crate::gathered::directions::{BINS, above, basis, bin};
     pub use crate::gathered::guide::guided;
+    pub use crate::gathered::identity::Identity;
     pub use crate::gathered::saved::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite};
 }
 

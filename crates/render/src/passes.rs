@@ -253,9 +253,11 @@ impl<B: Backend> Passes<'_, B> {
             let pieces = n * range.numbers.len();
             let light = if all.apart { 0 } else { self.pieces_of_light(n as u64) };
             run.job.work.expect((pieces + n) as u64 + light);
-            let mut samples = run.stage(Stage::PrimaryRays, [pieces; 2], |backend| {
-                backend.pixel_samples(run.job, scene, &mut rays, &mut hits, film, &range)
-            })?;
+            let centers = self.wave(&rays, &hits, 1);
+            let sampled =
+                run.stage(Stage::PrimaryRays, [pieces; 2], |backend| backend.pixel_samples(&centers, film, &range))?;
+            let mut samples;
+            (samples, rays, hits) = sampled;
             let wave = self.wave(&rays, &hits, 1);
             if !all.apart {
                 self.light(&wave, film)?;

@@ -67,9 +67,11 @@ impl Plan {
         samples * (u64::from(self.directions) + u64::from(self.lets_through))
     }
 
-    /// Bytes of the samples of a pixel: a hit and an owner each, and the pixel's state.
+    /// Bytes of the samples of a pixel: a hit and an owner each, the hit of its centre once more, and its state.
     pub(crate) fn sample_bytes(&self) -> u64 {
-        self.antialiasing.as_ref().map_or(0, |all| (size_of::<Hit>() as u64 + 1) * u64::from(all.at_once()) + 8)
+        self.antialiasing
+            .as_ref()
+            .map_or(0, |all| (size_of::<Hit>() as u64 + 1) * u64::from(all.at_once()) + size_of::<Hit>() as u64 + 8)
     }
 
     /// Rows above and below a band that are rendered with it, together.

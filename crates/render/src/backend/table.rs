@@ -7,15 +7,13 @@ macro_rules! stage_table {
         $use! {
             /// Computes what each ray hits.
             primary_rays(job: &Job, scene: &Self::Scene, rays: &Self::Rays) -> Self::Hits;
-            /// Computes what some samples of each pixel see, and which pixels are shared: `hits`, those of the centres, keeps them alone.
+            /// Computes what some samples of each pixel see, and which pixels are shared: of the wave, whose rays go through the centres, the
+            /// hits of these pixels alone are left.
             pixel_samples(
-                job: &Job,
-                scene: &Self::Scene,
-                rays: &mut Self::Rays,
-                hits: &mut Self::Hits,
+                wave: &WaveOf<Self>,
                 film: &mut Self::Film,
                 range: &SampleRange
-            ) -> Self::Samples;
+            ) -> (Self::Samples, Self::Rays, Self::Hits);
             /// Parts the samples of the pixels that are not shared, or should not be: shared fragments, single samples, and those that show what
             /// is in mirrors, with what they see.
             fragments(

@@ -18,22 +18,20 @@ mod fan;
 mod far;
 mod fine;
 pub(crate) mod guide;
+pub(crate) mod identity;
 mod light;
 mod lookup;
 mod rays;
 pub(crate) mod saved;
 mod scene;
-
-use std::sync::Arc;
+mod sources;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{BLEND_FROM, COARSER};
-use lightmesh_scene::{Bounds, Environment, Geometry};
+use lightmesh_scene::Bounds;
 use rayon::prelude::*;
-use xxhash_rust::xxh3::Xxh3;
 
 use crate::data::wave::HostWave;
-use crate::prepared::PreparedScene;
 use crate::settings::Quality;
 use crate::shading::normal_seen;
 use crate::surface::SurfacePoint;
@@ -46,6 +44,7 @@ use fine::Coarse;
 use light::Light;
 use lookup::{Links, Place};
 use scene::Scene;
+pub(crate) use sources::Sources;
 
 /// Surface points that are processed at once.
 const POINTS_AT_ONCE: usize = 1 << 16;
@@ -142,69 +141,6 @@ pub struct SurfaceLight {
     far_cells: Cells,
     far: Vec<Option<Box<Far>>>,
     bounce: Bounce,
-}
-
-/// Changes with what is computed from the same sources: what was saved before is gathered anew.
-const REVISION: &[u8] = b"guided2";
-
-/// All that gathered light depends on, besides the geometry.
-pub(crate) struct Sources {
-    lights: Vec<lightmesh_scene::Light>,
-    environment: Option<Arc<Environment>>,
-    seed: u64,
-    fans: Fans,
-}
-
-impl Sources {
-    pub(crate) fn new(scene: &PreparedScene, seed: u64, how: &Gathering) -> Sources {
-        let lights = &scene.scene.lights;
-        Sources { lights: lights.list.clone(), environment: lights.environment.clone(), seed, fans: how.fans }
-    }
-}
-
-impl Sources {
-    /// Hash of these sources, and of the surfaces of `scene`: of all that decides what is gathered there. Unlike addresses, it is the same in
-    /// all processes.
-    pub(crate) fn hash(&self, scene: &PreparedScene) -> u64 {
-        let mut hash = Xxh3::new();
-        let mut add = |bytes: &[u8]| {
-            hash.update(&(bytes.len() as u64).to_le_bytes());
-            hash.update(bytes);
-        };
-        // 1. How it is gathered, and surfaces.
-        add(REVISION);
-        add(&scene.geometry.hash().to_le_bytes());
-        let Geometry { mesh, materials, textures, .. } = &*scene.scene.geometry;
-        add(bytemuck::cast_slice(mesh.triangles.as_flattened()));
-        add(bytemuck::cast_slice(&mesh.normals));
-        add(bytemuck::cast_slice(&mesh.uvs));
-        add(bytemuck::cast_slice(&mesh.colors));
-        add(bytemuck::cast_slice(&mesh.opacities));
-        add(bytemuck::cast_slice(&mesh.materials));
-        add(format!("{:?} {materials:?}", mesh.instances).as_bytes());
-        for texture in textures.iter() {
-            add(bytemuck::cast_slice(&texture.size));
-            add(texture.texels.as_flattened());
-        }
-        // 2. Lights and surroundings.
-        let Sources { lights, environment, seed, fans } = self;
-        add(format!("{lights:?} {seed} {fans:?}").as_bytes());
-        if let Some(environment) = environment {
-            let (size, frame) = (environment.size(), environment.frame());
-            add(format!("{size:?} {frame:?} {:?} {:?}", environment.sun(), environment.discs()).as_bytes());
-            add(bytemuck::cast_slice(environment.texels().as_flattened()));
-        }
-        hash.digest()
-    }
-}
-
-impl PartialEq for Sources {
-    /// Panoramas are the same if they are one.
-    fn eq(&self, other: &Sources) -> bool {
-        let name = |sources: &Sources| sources.environment.as_ref().map(Arc::as_ptr);
-        let same = name(self) == name(other) && self.seed == other.seed && self.fans == other.fans;
-        same && self.lights == other.lights
-    }
 }
 
 impl SurfaceLight {

@@ -1,8 +1,10 @@
 //! The renderer: from a scene and settings to a frame.
 //!
-//! [`resolve`] checks the settings and chooses what they leave open, [`crate::passes`] combines the stages, [`report`] describes what was
-//! done.
+//! [`resolve`] checks the settings and chooses what they leave open, [`crate::passes`] combines the stages, [`picture`] is the way of an image
+//! through them, and [`report`] describes what was done.
 
+mod frame;
+mod picture;
 mod report;
 mod resolve;
 
@@ -11,7 +13,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::Vec3;
-use lightmesh_image::{FrameParts, Layers, SaveError};
 use lightmesh_kernels::{Driver, Runtime};
 use lightmesh_memory::Budget;
 use lightmesh_scene::Scene;
@@ -20,78 +21,18 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::backend::run::Run;
 use crate::backend::{Backend, Cpu, Cuda};
 use crate::cache::{Kept, MeshCache, MeshFileError};
-use crate::data::picture::Picture;
 use crate::device::{Choice, Chosen, Device};
 use crate::error::RenderError;
-use crate::gathered::Sources;
 use crate::gpu;
 use crate::observer::{Observer, Unobserved};
-use crate::passes::{Baking, Passes};
+use crate::passes::Baking;
 use crate::prepared::{Preparations, PreparedScene};
 use crate::probes::{GivenPoints, PointVisibility};
-use crate::settings::{Acceleration, Crop, Settings};
-use crate::shading::ids::catchers;
+use crate::settings::{Acceleration, Settings};
 use crate::shadow::rows::KnownRows;
-use crate::stats::Stats;
+pub use frame::Frame;
+use picture::picture_on;
 use resolve::Resolved;
-
-/// A finished image and its statistics.
-#[derive(Clone, Debug)]
-pub struct Frame {
-    /// Linear colours, and alpha and layers if requested.
-    pub image: lightmesh_image::Frame,
-    /// Counts, seconds and settings.
-    pub stats: Stats,
-}
-
-impl Frame {
-    /// Writes the image as bmp, png, exr or jpg, by the file extension; 8-bit formats in sRGB.
-    ///
-    /// # Errors
-    /// [`SaveError`] if the extension is unknown or the file cannot be written; no partial file is left behind.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        self.image.save(path)
-    }
-
-    /// Width and height in pixels.
-    pub fn size(&self) -> [u32; 2] {
-        [self.image.width(), self.image.height()]
-    }
-
-    /// A part of the image, with what was finished of it; `None` if the frame does not have all of it.
-    pub fn cropped(self, crop: Crop) -> Option<Frame> {
-        let Crop { first: [x, y], size: [width, height] } = crop;
-        let above = y.saturating_sub(self.image.window().first[1]);
-        let finished = self.finished_rows().saturating_sub(above).min(height);
-        let image = self.image.cropped(crop.first, crop.size)?;
-        let mut stats = self.stats;
-        stats.settings.crop = Some([x, y, width, height]);
-        stats.finished_rows = (finished < height).then_some(finished);
-        Some(Frame { image, stats })
-    }
-
-    /// Linear colours, row-major, row 0 at the top.
-    pub fn color(&self) -> &[[f32; 3]] {
-        self.image.color()
-    }
-
-    /// What each pixel sees, if [`Settings::layers`] requested it.
-    pub fn layers(&self) -> Option<&Layers> {
-        self.image.layers()
-    }
-
-    /// The number of finished rows, from the top: all, unless the observer cancelled the render and
-    /// [`Settings::partial`] asked for what is finished. The rows below have the background's colour, or are
-    /// transparent, and their layers are those of pixels that see nothing.
-    pub fn finished_rows(&self) -> u32 {
-        self.stats.finished_rows.unwrap_or_else(|| self.image.height())
-    }
-
-    /// The image's vectors; nothing is copied.
-    pub fn into_parts(self) -> FrameParts {
-        self.image.into_parts()
-    }
-}
 
 /// Renders scenes on one device.
 pub struct Renderer {
@@ -352,91 +293,4 @@ pub fn render_on_with<B: Backend>(
     observer: &dyn Observer,
 ) -> Result<Frame, RenderError> {
     picture_on(backend, Some(kept), &Arc::default(), scene, settings, observer)
-}
-
-fn picture_on<B: Backend>(
-    backend: &B,
-    mut kept: Option<&mut Kept<B::Table>>,
-    rows: &Arc<KnownRows>,
-    scene: &PreparedScene,
-    settings: &Settings,
-    observer: &dyn Observer,
-) -> Result<Frame, RenderError> {
-    let start = Instant::now();
-    backend.check_structure(scene.geometry.acceleration())?;
-    // Where the camera sees nothing, a transparent image has nothing; mirrors still reflect the environment.
-    let hidden = settings.transparent && scene.scene.lights.environment.is_some();
-    let open = hidden.then(|| scene.with_lights(scene.scene.lights.clone().with_background(glam::Vec3::ZERO)));
-    let scene = open.as_ref().unwrap_or(scene);
-    let mut resolved = Resolved::new(scene, settings, observer)?;
-    resolved.plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
-    let Resolved { technique, view, plan, .. } = &resolved;
-    let mut plan = plan.clone();
-    if let Err(short) = backend.check_host_memory(&plan) {
-        // What is kept gives way to what is needed.
-        match &mut kept {
-            Some(kept) if !kept.is_empty() => kept.clear(),
-            _ => return Err(short),
-        }
-        plan.left = Budget::new(plan.memory_limit).left();
-        backend.check_host_memory(&plan)?;
-    }
-    let job = resolved.job(observer).with_rows(rows);
-    let rows = 0..plan.size[1];
-    let mut picture = Picture::planned(&plan, [rows.clone(), rows]);
-    let run = Run::new(backend, &job, kept);
-    let on_device = run.or_forget(|backend| backend.scene(&job, scene, plan.memory_limit))?;
-    if settings.has_light_points() {
-        plan.reserved = run.begin_kept(backend.left(&plan));
-        if backend.rows_at_once(&on_device, &plan).is_err() {
-            // All of it is needed for the image.
-            run.begin_kept(Some(0));
-            plan.reserved = 0;
-        }
-    }
-    let plan = &plan;
-    let sources = plan.gathering.as_ref().map(|how| Sources::new(scene, settings.seed, how));
-    if let Some(sources) = &sources {
-        run.recall_gathered(scene, sources);
-    }
-    let see_through = backend.see_through(&on_device);
-    let passes = Passes { run, scene: &on_device, see_through, technique, view, plan };
-    let rendered = passes.render(&mut picture);
-    // What a cancelled image gathered is not complete.
-    if let (Ok(_), Some(sources)) = (&rendered, sources) {
-        passes.run.keep_gathered(scene, sources);
-    }
-    let rows = match rendered {
-        Err(RenderError::Cancelled) if settings.partial && picture.finished > 0 => plan.most_rows.unwrap_or_default(),
-        rows => rows?,
-    };
-    let mut stats =
-        report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
-    stats.finished_rows = (picture.finished < plan.size[1]).then_some(picture.finished);
-    stats.counts.pixels = u64::from(plan.size[0]) * u64::from(picture.finished);
-    stats.counts.non_finite_pixels = picture.non_finite();
-    if plan.compositing {
-        let objects = scene.scene.geometry.mesh.objects.names().map(str::to_owned).collect();
-        picture.complete_mattes([objects, scene.geometry.materials.names.clone()], plan.antialiasing.is_none());
-    }
-    picture.fill_unfinished(scene.scene.lights.background.unwrap_or_default());
-    if settings.transparent {
-        if !plan.coverage {
-            picture.find_coverage();
-        }
-        picture.uncover_caught(if plan.caught { catchers(scene) } else { Default::default() });
-        picture.take_out(scene.scene.lights.background.unwrap_or_default());
-    }
-    if !settings.layers {
-        picture.layers = None;
-    }
-    let window = view.window();
-    let frame = Frame { image: picture.into_frame().with_window(window.first, window.whole), stats };
-    match settings.crop {
-        Some(crop) => {
-            let part = frame.cropped(crop).expect("the window has all pixels of the crop");
-            if part.finished_rows() == 0 { Err(RenderError::Cancelled) } else { Ok(part) }
-        }
-        None => Ok(frame),
-    }
 }

@@ -80,7 +80,9 @@ pub enum MeshFault {
         expected: f32,
     },
     /// Its gathered light depends on something that has changed.
-    #[error("has light gathered from other lights, surroundings or materials, or with another seed or quality")]
+    #[error(
+        "has light gathered from other lights, surroundings or materials, with another seed or quality, or by another version"
+    )]
     OtherSources,
     /// It is cut off, or its content is not as written.
     #[error("is damaged: {0}")]

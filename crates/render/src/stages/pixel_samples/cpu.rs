@@ -15,8 +15,8 @@ use crate::data::mattes::count;
 use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
+use crate::data::wave::{HostWave, Wave};
 use crate::footprint::Cone;
-use crate::job::Job;
 use crate::prepared::PreparedScene;
 use crate::shading::ids::ids_of;
 
@@ -25,16 +25,15 @@ const BATCH: usize = 256;
 /// Number of pixels of a beam.
 const BEAM: usize = 8;
 
-/// What the samples of pixels see. Takes away from `hits`, those of the centres, what is not shared.
+/// What the samples of pixels see; and the wave's rays and hits, those of the centres, without the hits of what is not shared.
 pub(crate) fn pixel_samples(
-    job: &Job,
-    scene: &PreparedScene,
-    rays: &mut RayList,
-    hits: &mut [Hit],
+    wave: &HostWave,
     film: &mut Picture,
     range: &SampleRange,
-) -> PixelSamples {
+) -> (PixelSamples, RayList, Vec<Hit>) {
     let SampleRange { all, numbers } = range;
+    let Wave { job, scene, .. } = *wave;
+    let (mut rays, mut hits) = (wave.rays.clone(), wave.hits.clone());
     let view = rays.view.expect("the rays are a camera's");
     let (pixels, first) = (rays.pixels.len(), film.rows.start * view.size()[0]);
 
@@ -44,7 +43,7 @@ pub(crate) fn pixel_samples(
 
     // 1. What each sample sees. The rays through a pixel follow each other: they are coherent.
     let (level, count) = (Level::new(), numbers.len());
-    let depths = Depths::new(rays, hits, first);
+    let depths = Depths::new(&rays, &hits, first);
     let mut all_hits: Vec<Hit> = bytemuck::zeroed_vec(pixels * count);
     all_hits.par_chunks_mut(BATCH * count).enumerate().for_each_init(
         || (Vec::new(), scene.geometry.beams()),
@@ -66,9 +65,9 @@ pub(crate) fn pixel_samples(
         numbers: numbers.clone(),
     };
     count_ids(scene, &samples, film);
-    nearest(scene, rays, &samples, film, range);
+    nearest(scene, &rays, &samples, film, range);
     if all.apart {
-        return samples;
+        return (samples, rays, hits);
     }
 
     // 2. Which pixels are shared, and which samples of the others lie on one surface?
@@ -86,7 +85,7 @@ pub(crate) fn pixel_samples(
                     parted.shared.push(pixel);
                     continue;
                 }
-                let mut surfaces = Surfaces::new(scene, rays, all, (ray, *hit), (pixel, others));
+                let mut surfaces = Surfaces::new(scene, &rays, all, (ray, *hit), (pixel, others));
                 if may_share && surfaces.is_shared() {
                     parted.shared.push(pixel);
                     continue;
@@ -109,7 +108,7 @@ pub(crate) fn pixel_samples(
         }
     }
     rays.sampled = Some(Sampled { hits: Arc::clone(&samples.hits), first, count });
-    samples
+    (samples, rays, hits)
 }
 
 /// How far the centres of pixels see.

@@ -8,15 +8,13 @@ use lightmesh_layout::stages::PixelSamples;
 
 use super::SampleRange;
 use crate::counters::Tally;
+use crate::data::wave::Wave;
 use crate::error::RenderError;
 use crate::footprint::Cone;
 use crate::gpu::film::DeviceFilm;
-use crate::gpu::rays::{DeviceHits, DeviceRays};
+use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceWave};
 use crate::gpu::samples::{DeviceSampled, DeviceSamples};
-use crate::gpu::{
-    BLOCK, BLOCK_SIDE, Cuda, DeviceScene, PerModule, PerStructure, Work, blocks_for, per_module, per_structure,
-};
-use crate::job::Job;
+use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerModule, PerStructure, Work, blocks_for, per_module, per_structure};
 
 const CAST: PerStructure = per_structure!("pixel_samples", "pixel_samples");
 const NEAREST: PerModule = per_module!("pixel_samples", "nearest_samples");
@@ -27,17 +25,21 @@ const MOST_TOGETHER: u32 = 3;
 /// Number of blocks in the first launch.
 const FIRST: u64 = 256;
 
-/// What the samples of pixels see. Takes away from `hits`, those of the centres, what is not shared.
+/// Samples, and the rays and hits of the centres of pixels.
+type Sampled<R> = (DeviceSamples<R>, DeviceRays<R>, DeviceHits<R>);
+
+/// What the samples of pixels see; and the wave's rays and hits, those of the centres, without the hits of what is not shared.
 pub(crate) fn pixel_samples<R: Runtime>(
     cuda: &Cuda<R>,
-    job: &Job,
-    scene: &DeviceScene<R>,
-    rays: &mut DeviceRays<R>,
-    hits: &mut DeviceHits<R>,
+    wave: &DeviceWave<R>,
     film: &mut DeviceFilm<R>,
     range: &SampleRange,
-) -> Result<DeviceSamples<R>, RenderError> {
+) -> Result<Sampled<R>, RenderError> {
     let SampleRange { all, numbers } = range;
+    let Wave { job, scene, .. } = *wave;
+    let mut rays = DeviceRays::new(wave.rays.record, None, wave.rays.spacing);
+    let centers = cuda.pool().room("hits of centres", rays.len())?;
+    cuda.copy(&wave.hits.hits, &centers, rays.len())?;
     if scene.host.has_cones() {
         rays.record.cone = bytemuck::cast(Cone::of_sample(rays.spacing, all.samples, all.breadth));
     }
@@ -49,7 +51,7 @@ pub(crate) fn pixel_samples<R: Runtime>(
         scene: scene.record,
         rays: rays.record,
         hits: planes.output(),
-        centers: hits.hits.output(),
+        centers: centers.output(),
         state: state.output(),
         owners: owners.output(),
         tally: cuda.tally()?,
@@ -112,5 +114,5 @@ pub(crate) fn pixel_samples<R: Runtime>(
         };
         rays.sampled = Some(sampled);
     }
-    Ok(DeviceSamples { hits, _state: state, _owners: owners, record })
+    Ok((DeviceSamples { hits, _state: state, _owners: owners, record }, rays, DeviceHits { hits: centers }))
 }

@@ -1,2 +1,3 @@
 mod directions;
 mod guide;
+mod identity;

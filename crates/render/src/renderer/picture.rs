@@ -1,0 +1,161 @@
+//! The way of one image: it is admitted, rendered, developed and cropped.
+//!
+//! 1. *Admit*: settings are checked and resolved, and there is enough memory.
+//! 2. *Render*: the passes fill the picture, with what is kept from earlier images.
+//! 3. *Develop*: what the passes left becomes what was asked for: rows without content, transparency, mattes.
+//! 4. *Crop*: the part that was asked for, of all that it depends on.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::Vec3;
+use lightmesh_memory::Budget;
+
+use super::frame::Frame;
+use super::report::{self, DeviceFacts};
+use super::resolve::Resolved;
+use crate::backend::Backend;
+use crate::backend::run::Run;
+use crate::cache::Kept;
+use crate::data::picture::Picture;
+use crate::error::RenderError;
+use crate::gathered::Sources;
+use crate::job::Job;
+use crate::observer::Observer;
+use crate::passes::Passes;
+use crate::plan::Plan;
+use crate::prepared::PreparedScene;
+use crate::settings::{Crop, Settings};
+use crate::shading::ids::catchers;
+use crate::shadow::rows::KnownRows;
+use crate::stats::Stats;
+
+/// Renders one image, with what is `kept` from image to image on this backend, and the rows of samples that images share.
+pub(super) fn picture_on<B: Backend>(
+    backend: &B,
+    mut kept: Option<&mut Kept<B::Table>>,
+    rows: &Arc<KnownRows>,
+    scene: &PreparedScene,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<Frame, RenderError> {
+    let start = Instant::now();
+    let open = without_background(scene, settings);
+    let scene = open.as_ref().unwrap_or(scene);
+
+    let resolved = admit(backend, kept.as_deref_mut(), scene, settings, observer)?;
+    let job = resolved.job(observer).with_rows(rows);
+    let (picture, rows_at_once) = render(backend, kept, &job, &resolved)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let stats = report::stats(&job, &resolved, DeviceFacts::of(backend), rows_at_once, seconds);
+    crop(develop(picture, &resolved, stats), settings.crop)
+}
+
+/// The scene for a transparent image. Where the camera sees nothing, that has nothing; mirrors still reflect the environment.
+fn without_background(scene: &PreparedScene, settings: &Settings) -> Option<PreparedScene> {
+    let hidden = settings.transparent && scene.scene.lights.environment.is_some();
+    hidden.then(|| scene.with_lights(scene.scene.lights.clone().with_background(Vec3::ZERO)))
+}
+
+/// 1. Resolves the settings, and rejects what cannot be rendered before any of it is.
+fn admit<'a, B: Backend>(
+    backend: &B,
+    kept: Option<&mut Kept<B::Table>>,
+    scene: &'a PreparedScene,
+    settings: &'a Settings,
+    observer: &dyn Observer,
+) -> Result<Resolved<'a>, RenderError> {
+    backend.check_structure(scene.geometry.acceleration())?;
+    let mut resolved = Resolved::new(scene, settings, observer)?;
+    let plan = &mut resolved.plan;
+    plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
+    if let Err(short) = backend.check_host_memory(plan) {
+        // What is kept gives way to what is needed.
+        match kept {
+            Some(kept) if !kept.is_empty() => kept.clear(),
+            _ => return Err(short),
+        }
+        plan.left = Budget::new(plan.memory_limit).left();
+        backend.check_host_memory(plan)?;
+    }
+    Ok(resolved)
+}
+
+/// 2. What the passes make of the scene, and how many rows were rendered at once. Of an image that was stopped, the rows that are finished if
+///    these are asked for.
+fn render<B: Backend>(
+    backend: &B,
+    kept: Option<&mut Kept<B::Table>>,
+    job: &Job,
+    resolved: &Resolved,
+) -> Result<(Picture, u32), RenderError> {
+    let Resolved { scene, settings, technique, view, plan, .. } = resolved;
+    let rows = 0..plan.size[1];
+    let mut picture = Picture::planned(plan, [rows.clone(), rows]);
+    let run = Run::new(backend, job, kept);
+    let on_device = run.or_forget(|backend| backend.scene(job, scene, plan.memory_limit))?;
+    let plan = &Plan { reserved: reserved(&run, &on_device, settings, plan), ..plan.clone() };
+    let sources = plan.gathering.as_ref().map(|how| Sources::new(scene, settings.seed, how));
+    if let Some(sources) = &sources {
+        run.recall_gathered(scene, sources);
+    }
+    let see_through = backend.see_through(&on_device);
+    let passes = Passes { run, scene: &on_device, see_through, technique, view, plan };
+    let rendered = passes.render(&mut picture);
+    // What a cancelled image gathered is not complete.
+    if let (Ok(_), Some(sources)) = (&rendered, sources) {
+        passes.run.keep_gathered(scene, sources);
+    }
+    let rows = match rendered {
+        Err(RenderError::Cancelled) if settings.partial && picture.finished > 0 => plan.most_rows.unwrap_or_default(),
+        rows => rows?,
+    };
+    Ok((picture, rows))
+}
+
+/// Bytes by which what is kept of light points may grow.
+fn reserved<B: Backend>(run: &Run<B>, scene: &B::Scene, settings: &Settings, plan: &Plan) -> u64 {
+    if !settings.has_light_points() {
+        return 0;
+    }
+    let reserved = run.begin_kept(run.backend.left(plan));
+    if run.backend.rows_at_once(scene, &Plan { reserved, ..plan.clone() }).is_ok() {
+        return reserved;
+    }
+    // All of it is needed for the image.
+    run.begin_kept(Some(0));
+    0
+}
+
+/// 3. The frame of a picture, with its own statistics.
+fn develop(mut picture: Picture, resolved: &Resolved, mut stats: Stats) -> Frame {
+    let Resolved { scene, settings, view, plan, .. } = resolved;
+    stats.finished_rows = (picture.finished < plan.size[1]).then_some(picture.finished);
+    stats.counts.pixels = u64::from(plan.size[0]) * u64::from(picture.finished);
+    stats.counts.non_finite_pixels = picture.non_finite();
+    if plan.compositing {
+        let objects = scene.scene.geometry.mesh.objects.names().map(str::to_owned).collect();
+        picture.complete_mattes([objects, scene.geometry.materials.names.clone()], plan.antialiasing.is_none());
+    }
+    let background = scene.scene.lights.background.unwrap_or_default();
+    picture.fill_unfinished(background);
+    if settings.transparent {
+        if !plan.coverage {
+            picture.find_coverage();
+        }
+        picture.uncover_caught(if plan.caught { catchers(scene) } else { Default::default() });
+        picture.take_out(background);
+    }
+    if !settings.layers {
+        picture.layers = None;
+    }
+    let window = view.window();
+    Frame { image: picture.into_frame().with_window(window.first, window.whole), stats }
+}
+
+/// 4. The part of a frame that was asked for.
+fn crop(frame: Frame, crop: Option<Crop>) -> Result<Frame, RenderError> {
+    let Some(crop) = crop else { return Ok(frame) };
+    let part = frame.cropped(crop).expect("the window has all pixels of the crop");
+    if part.finished_rows() == 0 { Err(RenderError::Cancelled) } else { Ok(part) }
+}
