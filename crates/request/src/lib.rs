@@ -20,6 +20,7 @@ pub mod files;
 pub mod film;
 mod host;
 mod image_plan;
+mod items;
 mod manifest;
 mod mesh_file;
 mod open;

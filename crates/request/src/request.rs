@@ -6,7 +6,8 @@ use lightmesh_image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, Tr
 use lightmesh_render::{Acceleration, AmbientSource, Crop, Device, Filter, Lookup, Mode, Quality, ShortTests, Step};
 use lightmesh_scene::{Falloff, Instancing, SceneFormat, Weight};
 
-use crate::table::{Field, Group, Slot};
+use crate::items::Slot;
+use crate::table::{Field, Group};
 use crate::value::{
     Background, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec, Positive,
     Size, SkySpec, Smooth, SunSpec, Switch, UpChoice,
