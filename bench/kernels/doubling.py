@@ -20,19 +20,19 @@ SUITES = {"stages": 28, "shadows": 38, "antialiasing": 14, "light": 14}
 
 KERNELS = [
     ("primary rays", lambda s, st, k: st == "primary_rays" and s in ("stages", "shadows") and k["accel"] == "bvh"),
-    ("samples of pixels", lambda s, st, k: st == "primary_rays" and s == "antialiasing" and k["aa"] > 1),
-    ("occluder lists", lambda s, st, k: st == "long_tests" and s == "shadows" and k.get("method") == "lists"),
+    ("samples of pixels", lambda s, st, k: st == "pixel_samples" and s == "antialiasing" and k["aa"] > 1),
+    ("occluder lists", lambda s, st, k: st == "occluder_lists" and s == "shadows"),
     ("short tests by cell", lambda s, st, k: st == "short_tests" and s == "stages" and k["short_tests"] == "cells" and k["accel"] == "bvh"),
     ("short tests, plain", lambda s, st, k: st == "short_tests" and s == "stages" and k["short_tests"] == "plain" and k["accel"] == "bvh"),
     ("long tests", lambda s, st, k: st == "long_tests" and s == "stages" and k["mode"] == "light-mesh" and k["accel"] == "bvh"),
     ("long tests of whole frames", lambda s, st, k: st == "long_tests" and s == "shadows" and k.get("method") == "half-ball"),
-    ("hard shadow rays", lambda s, st, k: st == "long_tests" and s == "stages" and k["mode"] == "ray-trace" and k["accel"] == "bvh"),
-    ("rays to samples", lambda s, st, k: st == "long_tests" and s == "shadows" and k.get("method") == "rays"),
-    ("adaptive rays", lambda s, st, k: st == "long_tests" and s == "shadows" and k.get("method") == "adaptive"),
-    ("samples in rows", lambda s, st, k: st == "long_tests" and s == "shadows" and k.get("method") == "rows"),
+    ("hard shadow rays", lambda s, st, k: st == "shadow_rays" and s == "stages" and k["accel"] == "bvh"),
+    ("rays to samples", lambda s, st, k: st == "shadow_rays" and s == "shadows"),
+    ("adaptive rays", lambda s, st, k: st == "adaptive_shadows" and s == "shadows"),
+    ("samples in rows", lambda s, st, k: st == "area_shadows" and s == "shadows"),
     ("interpolation", lambda s, st, k: st == "interpolate" and k["accel"] == "bvh"),
     ("gathered light", lambda s, st, k: st == "gather"),
-    ("no difference: grids", lambda s, st, k: s == "stages" and st in ("primary_rays", "short_tests", "long_tests") and k["accel"] == "grid"),
+    ("no difference: grids", lambda s, st, k: s == "stages" and st in ("primary_rays", "short_tests", "long_tests", "shadow_rays") and k["accel"] == "grid"),
     ("no difference: shading", lambda s, st, k: st == "shade" and s == "shadows"),
 ]
 """Kernels, and which stages of which suites run them."""

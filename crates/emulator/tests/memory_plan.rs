@@ -402,13 +402,12 @@ fn every_stage_ends_at_its_total_in_bands_too() {
         let settings = settings().with_mode(mode).with_bounces(1).with_samples(3);
         render_on(&cuda, &prepared, &settings, &watch).unwrap();
         let watched: Vec<_> = watch.finished().iter().map(|watched| watched.stage).collect();
-        let of_the_mesh = [Stage::Cells, Stage::ShortTests, Stage::Collect, Stage::Interpolate];
+        let of_the_mesh = [Stage::Cells, Stage::ShortTests, Stage::Collect, Stage::LongTests, Stage::Interpolate];
         for stage in of_the_mesh {
             assert_eq!(watched.contains(&stage), mode == Mode::LightMesh, "{mode:?}: {stage:?} in {watched:?}");
         }
-        for stage in
-            [Stage::CameraRays, Stage::PrimaryRays, Stage::LongTests, Stage::Shade, Stage::Film, Stage::Download]
-        {
+        assert_eq!(watched.contains(&Stage::AreaShadows), mode == Mode::Area, "{mode:?}: {watched:?}");
+        for stage in [Stage::CameraRays, Stage::PrimaryRays, Stage::Shade, Stage::Film, Stage::Download] {
             assert!(watched.contains(&stage), "{mode:?}: no {stage:?} in {watched:?}");
         }
     }

@@ -102,7 +102,9 @@ unsafe fn render(opened: &Opened, request: &Request) -> Result<Report, Box<dyn E
         unsafe { copy(plane, request.visibility.add(light * plane.len())) };
     }
     let (stages, counts) = (&frame.stats.seconds, &frame.stats.counts);
-    let (primary_seconds, shadow_seconds) = (stages.primary_rays, stages.long_tests);
+    let primary_seconds = stages.primary_rays;
+    let shadow_seconds =
+        stages.shadow_rays + stages.area_shadows + stages.adaptive_shadows + stages.occluder_lists + stages.long_tests;
     let (rays, hits, shadow_rays) = (counts.rays, counts.hits, counts.shadow_rays);
     Ok(Report { seconds, primary_seconds, shadow_seconds, rays, hits, shadow_rays })
 }

@@ -203,7 +203,7 @@ impl<B: Backend> Passes<'_, B> {
             };
             if depths.merge {
                 let wave = self.wave(&rays, &hits, parts);
-                (rays, hits) = run.stage(Stage::MirrorRays, [0; 2], |backend| backend.merged_rays(&wave))?;
+                (rays, hits) = run.stage(Stage::MergedRays, [0; 2], |backend| backend.merged_rays(&wave))?;
                 n = run.backend.ray_count(&rays);
                 run.job.work.expect(self.pieces_of_wave(depth, n as u64) - n as u64);
             }
@@ -255,7 +255,7 @@ impl<B: Backend> Passes<'_, B> {
             run.job.work.expect((pieces + n) as u64 + light);
             let centers = self.wave(&rays, &hits, 1);
             let sampled =
-                run.stage(Stage::PrimaryRays, [pieces; 2], |backend| backend.pixel_samples(&centers, film, &range))?;
+                run.stage(Stage::PixelSamples, [pieces; 2], |backend| backend.pixel_samples(&centers, film, &range))?;
             let mut samples;
             (samples, rays, hits) = sampled;
             let wave = self.wave(&rays, &hits, 1);
@@ -265,7 +265,7 @@ impl<B: Backend> Passes<'_, B> {
 
             // The others, by surface or sample by sample.
             let [shared, single, mirror] =
-                run.stage(Stage::CameraRays, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
+                run.stage(Stage::Fragments, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
             for ((list, hits), depths, parts) in
                 [(shared, Depths::FIRST, PARTS_OF_FRAGMENT), (single, Depths::ALL, all.samples)]
             {

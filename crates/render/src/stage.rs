@@ -63,16 +63,30 @@ stages! {
     CameraRays = camera_rays,
     /// What each ray sees.
     PrimaryRays = primary_rays,
+    /// What the samples of pixels see.
+    PixelSamples = pixel_samples,
+    /// The samples that are shaded apart from their pixels.
+    Fragments = fragments,
     /// Surface points by cell of the light mesh.
     Cells = cells,
+    /// Surface points in small groups.
+    Items = items,
     /// Which light points each surface point sees.
     ShortTests = short_tests,
     /// Collecting each used light point once.
     Collect = collect,
-    /// Which lights each light point (or, in the other modes, surface point) sees.
+    /// Which lights each light point sees.
     LongTests = long_tests,
     /// Formula (3).
     Interpolate = interpolate,
+    /// Which lights each surface point sees, by rays.
+    ShadowRays = shadow_rays,
+    /// Which samples of lights each surface point sees, by what stands between.
+    AreaShadows = area_shadows,
+    /// Which lights each surface point sees, by one ray or all.
+    AdaptiveShadows = adaptive_shadows,
+    /// Which samples of lights small groups of surface points see, by what stands between.
+    OccluderLists = occluder_lists,
     /// What surfaces that are not opaque leave of the lights.
     Filters = filters,
     /// What surfaces receive from their surroundings and from each other.
@@ -81,6 +95,8 @@ stages! {
     Shade = shade,
     /// The rays reflected by mirrors.
     MirrorRays = mirror_rays,
+    /// Mirrored rays of a pixel that meet one surface.
+    MergedRays = merged_rays,
     /// Allocating rows of the image.
     Film = film,
     /// Copying finished rows to their place in the image, from a device if there is one.

@@ -32,7 +32,7 @@ struct Kind {
 
 const KINDS: [Kind; 3] = [
     Kind { name: "primary", mode: Mode::RayTrace, stage: Stage::PrimaryRays, count: |counts| counts.rays },
-    Kind { name: "hard shadow", mode: Mode::RayTrace, stage: Stage::LongTests, count: |counts| counts.shadow_rays },
+    Kind { name: "hard shadow", mode: Mode::RayTrace, stage: Stage::ShadowRays, count: |counts| counts.shadow_rays },
     Kind { name: "short", mode: Mode::LightMesh, stage: Stage::ShortTests, count: |counts| counts.short_tests },
 ];
 

@@ -38,7 +38,7 @@ const SAMPLES: [u32; 2] = [16, 64];
 /// Radii of the lights as parts of their distances.
 pub(super) const EMITTERS: [f32; 3] = [0.016, 0.042, 0.107];
 /// The stages between primary rays and shading.
-const STAGES: [&str; 2] = ["cells", "long_tests"];
+const STAGES: [&str; 5] = ["items", "occluder_lists", "area_shadows", "shadow_rays", "adaptive_shadows"];
 /// Samples of the reference, and in the short version.
 const CONVERGED: [u32; 2] = [1024, 256];
 /// Different from seed 0, which all measurements use.

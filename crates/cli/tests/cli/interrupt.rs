@@ -156,7 +156,7 @@ fn rendering_ends() {
     let flags = ["--mode", "area", "--size", "3000x3000", "--progress", "json", "--light", "3,5,2;1;0.5"];
     for (signal, code) in SIGNALS {
         let mut running = Running::new(&place, &[&["render", "room.toml", "-o", "a.png"], &flags[..]].concat());
-        running.await_event("begin", "long_tests");
+        running.await_event("begin", "area_shadows");
         assert_eq!(running.end_by(signal), (Some(code), NOTHING.to_owned()));
         assert_eq!(place.files(), ["a.png", "room.toml"]);
         assert_eq!(place.read("a.png"), b"the earlier image");

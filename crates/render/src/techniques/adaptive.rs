@@ -32,7 +32,7 @@ impl Visible for Adaptive {
     }
 
     fn stages(&self) -> &'static [Stage] {
-        &[Stage::LongTests]
+        &[Stage::AdaptiveShadows]
     }
 
     fn visibility<B: Backend>(
@@ -47,7 +47,7 @@ impl Visible for Adaptive {
         each_group::<B>(wave, groups, taker, |wave| {
             // Each surface point twice for each light: its first ray, and what follows from the answers.
             let pieces = 2 * n * wave.lights.of(groups.lights).len();
-            run.stage(Stage::LongTests, [n, pieces], |backend| backend.adaptive_shadows(wave, &aim))
+            run.stage(Stage::AdaptiveShadows, [n, pieces], |backend| backend.adaptive_shadows(wave, &aim))
         })
     }
 

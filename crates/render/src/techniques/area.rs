@@ -13,19 +13,24 @@ use crate::stats::SettingsStats;
 
 /// Many shadow rays per light.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Area;
+pub(crate) struct Area {
+    tests: ShadowTests,
+}
 
 impl Visible for Area {
     fn default_samples(_: &Settings) -> u32 {
         225
     }
 
-    fn resolve(_: &Request) -> Result<Area, RenderError> {
-        Ok(Area)
+    fn resolve(request: &Request) -> Result<Area, RenderError> {
+        Ok(Area { tests: request.settings.shadow_tests })
     }
 
     fn stages(&self) -> &'static [Stage] {
-        &[Stage::LongTests]
+        match self.tests {
+            ShadowTests::Rows => &[Stage::AreaShadows],
+            ShadowTests::Rays => &[Stage::ShadowRays],
+        }
     }
 
     fn visibility<B: Backend>(
@@ -37,11 +42,9 @@ impl Visible for Area {
     ) -> Result<(), RenderError> {
         let rays = run.backend.ray_count(wave.rays);
         let aim = wave.aim();
-        each_group::<B>(wave, groups, taker, |wave| {
-            run.stage(Stage::LongTests, [rays; 2], |backend| match wave.job.shadow_tests {
-                ShadowTests::Rows => backend.area_shadows(wave, &aim),
-                ShadowTests::Rays => backend.shadow_rays(wave, &aim),
-            })
+        each_group::<B>(wave, groups, taker, |wave| match wave.job.shadow_tests {
+            ShadowTests::Rows => run.stage(Stage::AreaShadows, [rays; 2], |backend| backend.area_shadows(wave, &aim)),
+            ShadowTests::Rays => run.stage(Stage::ShadowRays, [rays; 2], |backend| backend.shadow_rays(wave, &aim)),
         })
     }
 

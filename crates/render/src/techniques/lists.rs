@@ -36,7 +36,7 @@ impl Visible for Lists {
     }
 
     fn stages(&self) -> &'static [Stage] {
-        &[Stage::Cells, Stage::LongTests]
+        &[Stage::Items, Stage::OccluderLists]
     }
 
     fn visibility<B: Backend>(
@@ -49,13 +49,13 @@ impl Visible for Lists {
         let n = run.backend.ray_count(wave.rays);
 
         // Which surface points lie close together?
-        let items = run.stage(Stage::Cells, [n; 2], |backend| backend.items(wave))?;
+        let items = run.stage(Stage::Items, [n; 2], |backend| backend.items(wave))?;
         let pieces = run.backend.item_pieces(&items);
 
         // What stands between them and each light?
         let aim = wave.aim();
         each_group::<B>(wave, groups, taker, |wave| {
-            run.stage(Stage::LongTests, [n, pieces], |backend| backend.occluder_lists(wave, &items, &aim))
+            run.stage(Stage::OccluderLists, [n, pieces], |backend| backend.occluder_lists(wave, &items, &aim))
         })
     }
 

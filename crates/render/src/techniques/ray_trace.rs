@@ -26,7 +26,7 @@ impl Visible for RayTrace {
     }
 
     fn stages(&self) -> &'static [Stage] {
-        &[Stage::LongTests]
+        &[Stage::ShadowRays]
     }
 
     fn visibility<B: Backend>(
@@ -38,7 +38,7 @@ impl Visible for RayTrace {
     ) -> Result<(), RenderError> {
         let rays = run.backend.ray_count(wave.rays);
         each_group::<B>(wave, groups, taker, |wave| {
-            run.stage(Stage::LongTests, [rays; 2], |backend| backend.shadow_rays(wave, &Aim::Middle))
+            run.stage(Stage::ShadowRays, [rays; 2], |backend| backend.shadow_rays(wave, &Aim::Middle))
         })
     }
 

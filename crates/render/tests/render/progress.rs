@@ -7,6 +7,8 @@ use lightmesh_render::{Acceleration, Mode, PreparedScene, Settings, Stage, Step,
 use lightmesh_scene::{Geometry, Scene};
 use lightmesh_testkit::{Watch, half_plane};
 
+use crate::renderer;
+
 fn settings(mode: Mode) -> Settings {
     Settings::default()
         .with_aa(1)
@@ -29,10 +31,30 @@ fn stages(scene: &Scene, settings: &Settings) -> BTreeSet<&'static str> {
 fn every_stage_ends_at_its_total() {
     for &mode in Mode::ALL {
         let stages = stages(&half_plane(), &settings(mode));
-        let common = [Stage::CameraRays, Stage::PrimaryRays, Stage::LongTests, Stage::Shade, Stage::MirrorRays];
+        let common = [Stage::CameraRays, Stage::PrimaryRays, Stage::Shade, Stage::MirrorRays];
         assert!(common.iter().all(|stage| stages.contains(stage.name())), "{mode:?}: {stages:?}");
-        assert_eq!(stages.contains("interpolate"), mode == Mode::LightMesh, "{stages:?}");
+        let own = |stage, of| assert_eq!(stages.contains(stage), mode == of, "{mode:?}: {stages:?}");
+        own("long_tests", Mode::LightMesh);
+        own("interpolate", Mode::LightMesh);
+        own("area_shadows", Mode::Area);
+        own("shadow_rays", Mode::RayTrace);
     }
+}
+
+/// The default has neither cells nor long tests: each stage has its own name and clock.
+#[test]
+fn stages_of_lists_are_their_own() {
+    let settings = Settings::default().with_size([24, 16]).with_bounces(1);
+    let stages = stages(&half_plane(), &settings);
+    for stage in ["pixel_samples", "fragments", "items", "occluder_lists"] {
+        assert!(stages.contains(stage), "{stage} in {stages:?}");
+    }
+    for stage in ["cells", "short_tests", "collect", "long_tests", "interpolate"] {
+        assert!(!stages.contains(stage), "{stage} in {stages:?}");
+    }
+    let seconds = renderer().render(&half_plane(), &settings).unwrap().stats.seconds;
+    assert!(seconds.occluder_lists > 0.0 && seconds.items > 0.0 && seconds.pixel_samples > 0.0, "{seconds:?}");
+    assert_eq!([seconds.cells, seconds.long_tests], [0.0; 2]);
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn predict(pair: &Pair, row: &mut Row) {
     let value = |row: &Row, name: &str| row.values.get(name).copied().unwrap_or(0.0);
     let (hits, half_ball) = (value(pair.method, "hits"), value(pair.method, "half_ball_mean"));
     let (points, rays) = (value(pair.method, "light_points"), value(pair.hard, "shadow_rays"));
-    let (Some(short), Some(long)) = (pair.method.median("short_tests"), pair.hard.median("long_tests")) else {
+    let (Some(short), Some(long)) = (pair.method.median("short_tests"), pair.hard.median("shadow_rays")) else {
         return;
     };
     let (c_short, c_long) = (short / (hits * half_ball), long / rays);
@@ -143,7 +143,7 @@ mod tests {
         let rows = [1.0, 8.0, 16.0].into_iter().flat_map(|lights| {
             let counts = [("hits", 1000.0), ("half_ball_mean", 20.0), ("light_points", light_points)];
             let method = [("render", 10.0 + 0.1 * lights), ("short_tests", 8.0)];
-            let hard = [("render", 2.0 + lights), ("long_tests", lights)];
+            let hard = [("render", 2.0 + lights), ("shadow_rays", lights)];
             let rays = [("shadow_rays", 1000.0 * lights)];
             [row("light-mesh", lights, &method, &counts), row("ray-trace", lights, &hard, &rays)]
         });
