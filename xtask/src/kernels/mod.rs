@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use crate::{Outcome, Verdict};
+use crate::verdict::{Outcome, Verdict};
 
 /// The folder of kernels and headers; all paths in this module are relative to the repository.
 const SOURCES: &str = "crates/render/src";
