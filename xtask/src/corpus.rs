@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use crate::{Outcome, Verdict};
+use crate::verdict::{Outcome, Verdict};
 
 /// Maximum input size in bytes. A fuzzer mutates small inputs faster.
 const LONGEST: u64 = 16 << 10;

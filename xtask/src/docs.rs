@@ -7,8 +7,9 @@
 use std::fs;
 use std::path::Path;
 
+use crate::pages;
 use crate::references::{Pointer, Problem, leads_somewhere, pointers};
-use crate::{Outcome, Verdict, pages};
+use crate::verdict::{Outcome, Verdict};
 
 /// The documents that describe the repository; the book's pages come from its table of contents.
 const DOCUMENTS: [&str; 15] = [

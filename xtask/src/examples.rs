@@ -6,7 +6,7 @@ use std::env;
 use std::path::Path;
 use std::process::Command;
 
-use crate::{Outcome, Verdict};
+use crate::verdict::{Outcome, Verdict};
 
 /// Writes the tables of the pages on results and on the thesis' method from the results they name; with `check` only compares them.
 pub(crate) fn readme(root: &Path, check: bool) -> Outcome {

@@ -11,17 +11,17 @@ mod kernels;
 mod map;
 mod pages;
 mod references;
+mod verdict;
 
-use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 
 use kernels::Task;
+use verdict::Verdict;
 
 const USAGE: &str = "\
 usage: cargo xtask check-docs          checks that every file that the documents name exists
-       cargo xtask circles             checks that no modules of the renderer, and of the crates of rays and kernels,
-                                       import each other in a circle
+       cargo xtask circles             checks that no modules of a crate import each other in a circle
        cargo xtask kernels [--check [--recompile]]
                                        writes the layout header, the kernels' PTX and docs/kernels.md
        cargo xtask map [--check]       writes docs/map.md: each source file with the first sentence of its header
@@ -32,28 +32,6 @@ usage: cargo xtask check-docs          checks that every file that the documents
 
 With --check nothing is written: the command fails if a file is out of date. Kernels are checked by digests of their sources; with
 --recompile they are also compiled again and compared.";
-
-/// The result of a check; an error if it could not run.
-type Outcome = Result<Verdict, Box<dyn Error>>;
-
-/// What was found.
-#[derive(Debug)]
-enum Verdict {
-    /// All is well; how much was checked.
-    Passed(String),
-    /// The problems, a line each.
-    Failed(Vec<String>),
-}
-
-impl Verdict {
-    fn new(problems: Vec<impl ToString>, passed: impl FnOnce() -> String) -> Verdict {
-        if problems.is_empty() {
-            Verdict::Passed(passed())
-        } else {
-            Verdict::Failed(problems.iter().map(ToString::to_string).collect())
-        }
-    }
-}
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

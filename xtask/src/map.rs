@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{Outcome, Verdict};
+use crate::verdict::{Outcome, Verdict};
 
 const MAP: &str = "docs/map.md";
 const CRATES: &str = "crates";

@@ -20,6 +20,7 @@ pub mod report;
 mod results;
 mod save;
 pub mod schedule;
+mod suite;
 mod suites;
 mod table;
 
@@ -28,9 +29,10 @@ pub use error::BenchError;
 pub use findings::Findings;
 pub use machine::commit;
 pub use output::{OutputError, check_output_folder};
-pub use plan::{Plan, Suite};
+pub use plan::Plan;
 pub(crate) use results::{
     ANTIALIASING, FILM, FLICKER, FLIGHT, LIGHT, MANY_LIGHTS, SHADOWS, STAGES, WHOLE, WHOLE_FRAMES,
 };
 pub use results::{Gpu, Key, Machine, Picture, Program, Results, Row, Samples};
+pub use suite::Suite;
 pub use suites::{run, run_keeping};

@@ -1,57 +1,14 @@
 //! Programs that may have to end at any moment: what is unfinished then, and what is written.
 //!
-//! Every temporary file is created, renamed and removed under one lock. A program that is asked to end takes it for good: from then
-//! on, nothing can appear any more, and nothing unfinished stays.
+//! A program that is asked to end takes the lock of the [registry](crate::registry) for good: from then on, nothing can appear any more,
+//! and nothing unfinished stays.
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::output::{Ready, Step};
-
-/// Paths of temporary files.
-pub(crate) type Temporaries = BTreeSet<PathBuf>;
-
-/// The unfinished outputs of this process.
-#[derive(Debug)]
-pub(crate) struct Registry {
-    /// All temporary files.
-    pub(crate) temporaries: Temporaries,
-    /// Directories that have been searched for the files of dead runs.
-    pub(crate) swept: BTreeSet<PathBuf>,
-    /// What is written, as the user calls it; `None` if nobody asks.
-    written: Option<Vec<PathBuf>>,
-    /// The stream that is being written.
-    partial: Option<PathBuf>,
-    /// What is published if the program ends early.
-    pub(crate) standby: Option<Ready>,
-}
-
-static REGISTRY: Mutex<Registry> = Mutex::new(Registry {
-    temporaries: BTreeSet::new(),
-    swept: BTreeSet::new(),
-    written: None,
-    partial: None,
-    standby: None,
-});
-
-pub(crate) fn registry() -> MutexGuard<'static, Registry> {
-    REGISTRY.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Registry {
-    /// An output is there.
-    pub(crate) fn wrote(&mut self, path: PathBuf) {
-        self.partial = None;
-        self.written.iter_mut().for_each(|written| written.push(path.clone()));
-    }
-
-    /// A stream will have a part of an output.
-    pub(crate) fn begins(&mut self, path: PathBuf) {
-        self.partial = Some(path);
-    }
-}
+use crate::registry::registry;
+use crate::standby::exchange;
 
 /// What a program has written that ended early. Paths are those that were given for the outputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -71,7 +28,7 @@ pub fn record_written() {
 /// An output that [`abandon`] publishes, such as results so far; it replaces an earlier one, and [`publish`](crate::publish())
 /// replaces it. Only a file can stand by: what is written through would have to wait for a reader.
 pub fn stand_by(output: Option<Ready>) {
-    let earlier = std::mem::replace(&mut registry().standby, output);
+    let earlier = exchange(output, &mut registry());
     // The registry is free again.
     drop(earlier);
 }
@@ -81,7 +38,7 @@ pub fn stand_by(output: Option<Ready>) {
 /// exits, from any thread.
 pub fn abandon() -> Abandoned {
     let mut registry = registry();
-    if let Some((path, Step::Rename(file, target))) = registry.standby.take().map(Ready::step) {
+    if let Some((path, Step::Rename(file, target))) = exchange(None, &mut registry).map(Ready::step) {
         if file.rename(&target, &mut registry).is_ok() {
             registry.wrote(path);
         }

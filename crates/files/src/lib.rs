@@ -22,11 +22,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod check;
 mod ending;
 mod output;
 mod publish;
 mod read;
+mod registry;
 mod stale;
+mod standby;
 mod stream;
 mod target;
 mod temporary;
@@ -35,10 +38,11 @@ mod visible;
 #[cfg(test)]
 mod tests;
 
+pub use check::{check_folder, check_writable};
 pub use ending::{Abandoned, abandon, record_written, stand_by};
 pub use output::{Output, Ready, WriteError};
 pub use publish::{PublishError, publish, publish_record};
 pub use read::{Portion, ReadError, read, read_inside, read_stream};
 pub use stream::is_standard_output;
-pub use target::{Identity, TargetError, check_folder, check_writable, directory, identity};
+pub use target::{Identity, TargetError, directory, identity};
 pub use visible::{visible, visible_json, visible_lines};

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
-use crate::publish::publish;
 use crate::stream::Stream;
 use crate::target::{Target, TargetError};
 use crate::temporary::Temporary;
@@ -107,14 +106,6 @@ impl Output {
         }
         Ok(Ready(self))
     }
-
-    /// Publishes this output alone.
-    ///
-    /// # Errors
-    /// The system's error; a file at the target is then unchanged.
-    pub fn commit(self) -> io::Result<()> {
-        publish([self.ready()?]).map_err(|error| error.reason)
-    }
 }
 
 impl Write for Output {
@@ -150,7 +141,7 @@ impl Seek for Output {
     }
 }
 
-/// An output that is complete and durable, but does not exist before it is [published](publish). If dropped, it has never been.
+/// An output that is complete and durable, but does not exist before it is [published](crate::publish()). If dropped, it has never been.
 #[derive(Debug)]
 pub struct Ready(Output);
 

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::ending::registry;
-use crate::output::{Ready, Step};
+use crate::output::{Output, Ready, Step};
+use crate::registry::registry;
+use crate::standby;
 use crate::stream::{self, Stream};
 use crate::target::directory;
 use crate::temporary::Temporary;
@@ -63,6 +64,16 @@ pub fn publish(outputs: impl IntoIterator<Item = Ready>) -> Result<(), PublishEr
     Ok(())
 }
 
+impl Output {
+    /// Publishes this output alone.
+    ///
+    /// # Errors
+    /// The system's error; a file at the target is then unchanged.
+    pub fn commit(self) -> io::Result<()> {
+        publish([self.ready()?]).map_err(|error| error.reason)
+    }
+}
+
 /// Lets a file appear that a program keeps for itself, such as a record of its outputs: [`abandon`](crate::abandon) does not name it.
 ///
 /// # Errors
@@ -92,7 +103,7 @@ fn rename(files: &[(PathBuf, Temporary, PathBuf)], mut written: Vec<PathBuf>) ->
     // Dropped after the registry, which dropping it takes.
     let _superseded;
     let mut registry = registry();
-    _superseded = registry.standby.take();
+    _superseded = standby::exchange(None, &mut registry);
     for (path, file, target) in files {
         match file.rename(target, &mut registry) {
             Ok(()) => {

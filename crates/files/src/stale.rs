@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use tempfile::Builder;
 
-use crate::ending::registry;
+use crate::registry::registry;
 
 const PREFIX: &str = ".lightmesh-";
 const SUFFIX: &str = ".tmp";

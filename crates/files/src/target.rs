@@ -5,7 +5,6 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use crate::stream::Stream;
-use crate::temporary::Temporary;
 
 /// Links from link to link that are followed to a file that does not exist yet; systems follow no more either.
 const MAX_LINKS: usize = 40;
@@ -130,7 +129,8 @@ fn check_permission(path: &Path) -> io::Result<()> {
     fs::OpenOptions::new().write(true).open(path).map(drop)
 }
 
-fn check_directory(path: &Path, directory: &Path) -> Result<(), TargetError> {
+/// Fails unless files can be in what should be the directory of a target.
+pub(crate) fn check_directory(path: &Path, directory: &Path) -> Result<(), TargetError> {
     let (path, directory) = (path.to_owned(), directory.to_owned());
     match fs::metadata(&directory) {
         Ok(status) if status.is_dir() => Ok(()),
@@ -139,34 +139,6 @@ fn check_directory(path: &Path, directory: &Path) -> Result<(), TargetError> {
         Err(error) if error.kind() == ErrorKind::NotADirectory => Err(TargetError::NotADirectory { path, directory }),
         Err(reason) => Err(TargetError::Unwritable { path, directory, reason }),
     }
-}
-
-/// Checks that an output could be written to `path`, without touching what is there: that a file can be created next to it, and
-/// that the disk is not full.
-///
-/// # Errors
-/// The [`TargetError`] that [`Output::to`](crate::Output::to) would return.
-pub fn check_writable(path: impl AsRef<Path>) -> Result<(), TargetError> {
-    let path = path.as_ref();
-    match Target::of(path)? {
-        Target::File(file) => Temporary::new(path, &file)?.check_space(path, &file),
-        Target::Stream(_) => Ok(()),
-    }
-}
-
-/// Checks that files could be written to `folder`, which may be missing together with its parents. None is created.
-///
-/// # Errors
-/// [`TargetError`]
-pub fn check_folder(folder: impl AsRef<Path>) -> Result<(), TargetError> {
-    let folder = folder.as_ref();
-    let mut there = folder;
-    while fs::symlink_metadata(there).is_err() && there != directory(there) {
-        there = directory(there);
-    }
-    check_directory(folder, there)?;
-    let file = FileTarget { path: there.join("file"), existing: None };
-    Temporary::new(folder, &file)?.check_space(folder, &file)
 }
 
 /// What makes two paths the same file.

@@ -4,7 +4,7 @@ use std::fs::{self, File, Permissions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use crate::ending::{Registry, registry};
+use crate::registry::{Registry, registry};
 use crate::stale;
 use crate::target::{FileTarget, TargetError, directory};
 

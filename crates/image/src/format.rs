@@ -3,9 +3,12 @@
 use std::path::Path;
 
 #[cfg(feature = "bmp")]
-use crate::bmp;
-#[cfg(feature = "jpeg")]
-use crate::jpg;
+use crate::bmp::layout;
+
+/// Maximum number of pixels in a file: 16384 x 16384, 3 GiB of colours.
+pub(crate) const MAX_PIXELS: usize = 1 << 28;
+/// JPEG stores sizes in 16 bits.
+const MAX_JPG_SIDE: u32 = 65_535;
 
 /// An image format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -66,9 +69,9 @@ impl Format {
         let longest = width.max(height);
         let (exceeded, limit) = match self {
             #[cfg(feature = "bmp")]
-            Self::Bmp => (!bmp::can_hold(width, height), bmp::LIMIT),
+            Self::Bmp => (!layout::can_hold(width, height), layout::LIMIT),
             #[cfg(feature = "jpeg")]
-            Self::Jpg => (longest > jpg::MAX_SIDE, "65535 pixels per side"),
+            Self::Jpg => (longest > MAX_JPG_SIDE, "65535 pixels per side"),
             _ => (longest > i32::MAX as u32, "2147483647 pixels per side"),
         };
         exceeded.then_some(limit)

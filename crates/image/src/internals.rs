@@ -4,7 +4,8 @@
 
 #[cfg(feature = "bmp")]
 pub mod bmp {
-    pub use crate::bmp::{Layout, write};
+    pub use crate::bmp::layout::Layout;
+    pub use crate::bmp::write;
 }
 
 pub mod compare {

@@ -5,13 +5,11 @@ use std::io::{self, Cursor, Write};
 use image::ImageError;
 use image::codecs::jpeg::{JpegDecoder, JpegEncoder};
 
-use crate::load::{DecodeError, read_with};
-use crate::save::{EncodeError, check_fits};
-use crate::{Display, Format, Frame};
+use crate::decoder::read_with;
+use crate::sizes::check_fits;
+use crate::{DecodeError, Display, EncodeError, Format, Frame};
 
 const QUALITY: u8 = 92;
-/// The format stores sizes in 16 bits.
-pub(crate) const MAX_SIDE: u32 = 65_535;
 
 const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];

@@ -38,9 +38,12 @@
 #[cfg(feature = "bmp")]
 mod bmp;
 mod compare;
+#[cfg(any(feature = "bmp", feature = "jpeg"))]
+mod decoder;
 #[cfg(any(feature = "exr", feature = "png"))]
 mod deflate;
 mod display;
+mod error;
 mod exposure;
 #[cfg(feature = "exr")]
 mod exr;
@@ -56,15 +59,16 @@ mod options;
 #[cfg(feature = "png")]
 mod png;
 mod save;
+mod sizes;
 mod transfer;
 
 pub use compare::{CompareError, Comparison, compare};
 pub use display::{BitDepth, Display, UnknownView, View};
+pub use error::{DecodeError, EncodeError, LoadError, SaveError};
 pub use format::Format;
 pub use frame::{Frame, FrameError, FrameParts, Layers, Window};
 pub use lightmesh_files::{Output, PublishError, Ready, publish};
-pub use load::{DecodeError, LoadError};
 pub use matte::{MOST_RANKS, Matte, Rank};
 pub use options::{Description, ExrCompression, ExrOptions, ExrParts, ExrSamples, SaveOptions, UnknownWord};
-pub use save::{EncodeError, SaveError, check_image, check_options, check_size, check_writable};
+pub use save::{check_image, check_options, check_size, check_writable};
 pub use transfer::{Transfer, UnknownTransfer};

@@ -4,11 +4,10 @@
 //! file intact. Several of them can appear together: see [`Frame::ready`]. [`check_writable`] detects problems before
 //! any time is spent on rendering.
 
-use std::io::{self, BufWriter, Seek, Write};
-use std::path::{Path, PathBuf};
+use std::io::{BufWriter, Seek, Write};
+use std::path::Path;
 
-use lightmesh_files::{Output, PublishError, Ready, TargetError};
-use thiserror::Error;
+use lightmesh_files::{Output, Ready};
 
 #[cfg(feature = "bmp")]
 use crate::bmp;
@@ -18,129 +17,7 @@ use crate::exr;
 use crate::jpg;
 #[cfg(feature = "png")]
 use crate::png;
-use crate::{BitDepth, Format, Frame, SaveOptions, Transfer};
-
-/// Why an image cannot be saved.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum SaveError {
-    /// The extension is not that of a known format.
-    #[error("cannot save {}: unknown image format; use one of these extensions: {}", path.display(), Format::known())]
-    UnknownExtension {
-        /// The target.
-        path: PathBuf,
-    },
-    /// This crate was built without the format.
-    #[error("cannot save {}: this program was built without {format} files: build it with the feature {}", path.display(), format.feature())]
-    NotBuilt {
-        /// The target.
-        path: PathBuf,
-        /// The target's format.
-        format: Format,
-    },
-    /// Only exr files can store layers.
-    #[error("cannot save layers to {}: only OpenEXR files can store them; use the extension exr", path.display())]
-    LayersNeedExr {
-        /// The target.
-        path: PathBuf,
-    },
-    /// The frame was rendered without layers.
-    #[error("cannot save layers to {}: the frame has none; render it with layers", path.display())]
-    NoLayers {
-        /// The target.
-        path: PathBuf,
-    },
-    /// The file cannot be created.
-    #[error(transparent)]
-    Target(#[from] TargetError),
-    /// The format does not support images of this size.
-    #[error("cannot save {}: {width}x{height} pixels are too many for {format} ({limit}); use exr or png", path.display())]
-    TooLarge {
-        /// The target.
-        path: PathBuf,
-        /// The target's format.
-        format: Format,
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-        /// The limit of the format.
-        limit: &'static str,
-    },
-    /// The format has 8 bits per channel.
-    #[error("cannot save {} with 16 bits per channel: {format} files have 8; use png, or exr for floats", path.display())]
-    BitDepth {
-        /// The target.
-        path: PathBuf,
-        /// The target's format.
-        format: Format,
-    },
-    /// The format cannot be transparent.
-    #[error("cannot save {} with a transparent background: {format} files have no alpha; use png or exr", path.display())]
-    Alpha {
-        /// The target.
-        path: PathBuf,
-        /// The target's format.
-        format: Format,
-    },
-    /// Writing failed, most often because the disk is full; nothing is left behind.
-    #[error("cannot save {}: {reason}; nothing was written; check the free disk space", path.display())]
-    Write {
-        /// The target.
-        path: PathBuf,
-        /// The system's message.
-        reason: io::Error,
-    },
-    /// The complete file could not be renamed.
-    #[error(transparent)]
-    Publish(#[from] PublishError),
-}
-
-/// An error of a writer; [`SaveError`] adds the file.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum EncodeError {
-    /// The format does not support images of this size.
-    #[error("the format is limited to {limit}")]
-    TooLarge {
-        /// The limit.
-        limit: &'static str,
-    },
-    /// The format has 8 bits per channel.
-    #[error("{format} files have 8 bits per channel")]
-    BitDepth {
-        /// The format.
-        format: Format,
-    },
-    /// The format cannot be transparent.
-    #[error("{format} files have no alpha")]
-    Alpha {
-        /// The format.
-        format: Format,
-    },
-    /// This crate was built without the format.
-    #[error("this program was built without {format} files: build it with the feature {feature}")]
-    NotBuilt {
-        /// The format.
-        format: Format,
-        /// The Cargo feature that it needs.
-        feature: &'static str,
-    },
-    /// The frame was rendered without layers.
-    #[error("the frame has no layers; render it with layers")]
-    NoLayers,
-    /// The bytes could not be written.
-    #[error(transparent)]
-    Io(#[from] io::Error),
-}
-
-/// Fails if `format` does not support the size of `frame`.
-pub(crate) fn check_fits(format: Format, frame: &Frame) -> Result<(), EncodeError> {
-    match format.exceeded_limit(frame.width(), frame.height()) {
-        Some(limit) => Err(EncodeError::TooLarge { limit }),
-        None => Ok(()),
-    }
-}
+use crate::{BitDepth, EncodeError, Format, Frame, SaveError, SaveOptions, Transfer};
 
 /// Fails if `format` has fewer bits than requested, or no alpha.
 fn check_storable(format: Format, options: &SaveOptions, has_alpha: bool) -> Result<(), EncodeError> {

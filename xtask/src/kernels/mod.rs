@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use crate::{Outcome, Verdict};
+use crate::verdict::{Outcome, Verdict};
 
 /// The folders of kernels and headers, in which includes are searched for; all paths in this module are relative to the repository.
 const SOURCES: [&str; 3] = ["crates/kernels/src", "crates/trace/src", "crates/render/src"];

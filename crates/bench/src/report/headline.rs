@@ -4,7 +4,7 @@
 //! are shown. Ratios of many rows are geometric means.
 
 use super::document::Figure;
-use super::layout::{BREAK_EVEN, LIGHTS};
+use super::experiments::{BREAK_EVEN, LIGHTS};
 use super::numbers;
 use super::runs::{Measured, Runs};
 use super::side_by_side::geometric_mean;

@@ -3,6 +3,7 @@
 use lightmesh_files::visible;
 
 use super::document::{Block, Column, Document, Image, Table};
+use super::escape;
 
 /// Width of an image in a row, in pixels.
 const WIDTH: u32 = 260;
@@ -75,7 +76,7 @@ fn row(images: &[Image]) -> String {
     let cells =
         |cell: &dyn Fn(&Image) -> String| format!("| {} |\n", images.iter().map(cell).collect::<Vec<_>>().join(" | "));
     let pictures = cells(&|image| {
-        let title = super::html::escaped(&visible(&image.title));
+        let title = escape::escaped(&visible(&image.title));
         format!("<img src=\"{}\" width=\"{WIDTH}\" alt=\"{title}\"/>", image.file)
     });
     format!("{}|{}\n{pictures}", cells(&|image| escaped(&image.title)), "---|".repeat(images.len()))

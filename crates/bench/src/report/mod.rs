@@ -9,8 +9,11 @@
 mod curves;
 mod document;
 mod error;
+mod escape;
+mod experiments;
 mod headline;
 mod html;
+mod keys;
 mod layout;
 mod markdown;
 mod numbers;
@@ -173,7 +176,7 @@ fn document(runs: &Runs) -> Result<Document, Fault> {
         // Images stand above the tables about them.
         let tables = blocks.iter().position(|block| matches!(block, Block::Table(_))).unwrap_or(blocks.len());
         blocks.splice(tables..tables, gallery.blocks(experiment)?);
-        sections.push(Section { title: layout::title(experiment), blocks });
+        sections.push(Section { title: experiments::title(experiment), blocks });
     }
     sections.push(summary::section(runs));
     sections.extend(summary::notes(runs));

@@ -10,6 +10,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::document::Image;
+use super::escape::escaped;
 use super::numbers;
 
 /// Size in pixels.
@@ -192,7 +193,7 @@ fn draw_mark(area: &Area, curve: usize, at: (i32, i32)) -> DrawResult {
 /// With a label for screen readers, scaled to its container, and without the prolog, which has no place within a page.
 fn labelled(svg: &str, caption: &str) -> String {
     let fixed = format!("<svg width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
-    let head = format!("<svg role=\"img\" aria-label=\"{}\"", super::html::escaped(caption));
+    let head = format!("<svg role=\"img\" aria-label=\"{}\"", escaped(caption));
     svg.find("<svg").map_or_else(String::new, |start| svg[start..].replacen(&fixed, &head, 1))
 }
 

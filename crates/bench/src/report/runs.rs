@@ -1,6 +1,6 @@
 //! Results side by side: several result files, each a run of a suite.
 
-use super::{layout, numbers};
+use super::{experiments, numbers};
 use crate::{Key, Results, Row, WHOLE};
 
 /// Keys that say where a row was measured rather than what.
@@ -131,7 +131,7 @@ impl Runs {
         let rows = self.all().map(|measured| measured.row.experiment.as_str());
         let pictures = self.0.iter().flat_map(|run| &run.results.pictures).map(|picture| picture.experiment.as_str());
         let mut experiments = distinct(rows.chain(pictures));
-        experiments.sort_by_key(|experiment| layout::place(experiment));
+        experiments.sort_by_key(|experiment| experiments::place(experiment));
         experiments
     }
 }

@@ -1,7 +1,8 @@
 //! Rows common to several runs, with the ratios of their times.
 
 use super::document::{Block, Cell, Column, Section, Table};
-use super::layout::{self, key_column, key_names};
+use super::experiments;
+use super::keys::{key_column, key_names};
 use super::numbers;
 use super::pictures::{Fault, Gallery};
 use super::runs::{Measured, Runs, distinct};
@@ -26,7 +27,7 @@ fn table(runs: &Runs, experiment: &str) -> Table {
     });
     let lines: Vec<_> = lines.filter(|(count, ..)| *count > 1).collect();
     let rows: Vec<Measured> = lines.iter().filter_map(|(_, row, _)| *row).collect();
-    let mut table = Table::new(format!("{experiment}, runs"), layout::title(experiment), rows.len());
+    let mut table = Table::new(format!("{experiment}, runs"), experiments::title(experiment), rows.len());
     for key in key_names(&rows) {
         table.add(key_column(key, &rows), rows.iter().map(|row| row.text(key).into()));
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::document::{Block, Cell, Column, Image, Table};
-use super::layout::keyed;
+use super::keys::keyed;
 use super::plot::{Curve, Plot};
 use super::runs::{Measured, distinct};
 use super::{document, numbers};

@@ -15,6 +15,7 @@
 //!
 //! Rows of `whole frames` compare the program's defaults ([`frames`]), those of `many lights` numbers of lights ([`many_lights`]).
 
+mod case;
 mod frames;
 mod many_lights;
 
@@ -24,31 +25,22 @@ use lightmesh::render::{PreparedScene, ShadowTests};
 use lightmesh::scene::LightKind;
 use lightmesh::{Acceleration, Lookup, Mode, Observer, Scene, Settings, image};
 
+use self::case::{Case, Method, SAMPLES, shadow_seconds};
 use super::quality::visibility_rmse;
 use super::subjects::{self, Subject};
 use super::turns::Turns;
-use crate::engine::{self, Engine};
+use crate::engine;
 use crate::measure::{Silent, Variant};
-use crate::{BenchError, Findings, Key, Plan, Row, SHADOWS, Samples};
+use crate::{BenchError, Findings, Plan};
 
 /// Pixels along a side, and in the short version.
 const SIDES: [u32; 2] = [2048, 512];
-/// Numbers of samples.
-const SAMPLES: [u32; 2] = [16, 64];
 /// Radii of the lights as parts of their distances.
 pub(super) const EMITTERS: [f32; 3] = [0.016, 0.042, 0.107];
-/// The stages between primary rays and shading.
-const STAGES: [&str; 5] = ["items", "occluder_lists", "area_shadows", "shadow_rays", "adaptive_shadows"];
 /// Samples of the reference, and in the short version.
 const CONVERGED: [u32; 2] = [1024, 256];
 /// Different from seed 0, which all measurements use.
 const SEED: u64 = 1;
-
-/// A way to compute the shadows.
-struct Method {
-    name: &'static str,
-    choose: fn(Settings) -> Settings,
-}
 
 const METHODS: [Method; 4] = [
     Method { name: "lists", choose: |settings| settings.with_mode(Mode::LightMesh).with_lookup(Lookup::Lists) },
@@ -99,21 +91,7 @@ pub(super) fn with_emitters(subject: &Subject, emitter: Option<f32>) -> Scene {
     scene
 }
 
-/// A scene with some lights and a number of samples.
-struct Case<'a> {
-    subject: &'a Subject,
-    engine: &'a Engine,
-    scene: &'a PreparedScene,
-    emitter: Option<f32>,
-    settings: Settings,
-}
-
 impl Case<'_> {
-    fn variant(&self, method: &Method, layers: bool) -> Variant<'_> {
-        let settings = (method.choose)(self.settings.clone()).with_layers(layers);
-        Variant { renderer: &self.engine.renderer, scene: self.scene, settings }
-    }
-
     fn measure(
         &self,
         plan: &Plan,
@@ -157,39 +135,6 @@ impl Case<'_> {
         let settings = self.settings.clone().with_samples(CONVERGED[usize::from(plan.quick)]).with_seed(SEED);
         Case { settings, ..*self }.layered(&METHODS[0], observer)
     }
-
-    /// An image with layers, which timed ones do not have.
-    fn layered(&self, method: &Method, observer: &dyn Observer) -> Result<image::Frame, BenchError> {
-        let Variant { renderer, scene, settings } = self.variant(method, true);
-        Ok(renderer.render_prepared(scene, &settings, &Silent(observer))?.image)
-    }
-
-    fn row(&self, method: &Method) -> Row {
-        let samples = ("samples", f64::from(self.settings.samples.unwrap_or_default()).into());
-        self.row_of(SHADOWS, method.name, [samples])
-    }
-
-    /// A row of an experiment with keys of its own.
-    fn row_of<const N: usize>(&self, experiment: &str, method: &str, own: [(&'static str, Key); N]) -> Row {
-        let emitter = self.emitter.map_or_else(|| "own".into(), Key::from);
-        let keys = [
-            ("scene", self.subject.name.as_str().into()),
-            ("emitter", emitter),
-            ("size", f64::from(self.settings.size[0]).into()),
-            ("method", method.into()),
-            ("accel", self.scene.geometry.accelerator.name().into()),
-        ];
-        Row::new(experiment, keys.into_iter().chain(own).chain(self.engine.keys()))
-    }
-}
-
-/// The seconds between primary rays and shading, by repetition.
-fn shadow_seconds(row: &Row, repetitions: usize) -> Samples {
-    let mut sums = Samples::default();
-    for round in 0..repetitions {
-        sums.push(STAGES.iter().filter_map(|stage| row.seconds.get(*stage)).map(|samples| samples.0[round]).sum());
-    }
-    sums
 }
 
 /// The visibility of each light at each pixel.
@@ -212,6 +157,7 @@ mod tests {
     use lightmesh::render::Unobserved;
 
     use super::*;
+    use crate::SHADOWS;
     use crate::WHOLE_FRAMES;
 
     fn found(plan: Plan) -> Findings {

@@ -12,8 +12,8 @@ use ::exr::prelude::{ReadChannels, ReadLayers};
 
 use super::cryptomatte::{MATERIALS, Naming, OBJECTS};
 use super::{ALPHA, COLOR, DEPTH, LUMINANCE, NORMAL, POSITION, REST, USED, light_names, visibility_name};
-use crate::load::{DecodeError, checked_pixels};
-use crate::{Format, Frame, Layers, Matte};
+use crate::sizes::checked_pixels;
+use crate::{DecodeError, Format, Frame, Layers, Matte};
 
 /// Maximum decompressed size of the channels of a file, in bytes.
 const MAX_BYTES: u64 = 1 << 36;

@@ -23,8 +23,8 @@ use super::order::Sorted;
 use super::{ALPHA, COLOR, DEPTH, NORMAL, POSITION, REST, USED, attributes, light_names, visibility_name};
 use crate::matte::MOST_RANKS;
 use crate::options::{ExrCompression, ExrParts, ExrSamples, SaveOptions};
-use crate::save::{EncodeError, check_fits};
-use crate::{Format, Frame, Layers, Matte, Window, deflate};
+use crate::sizes::check_fits;
+use crate::{EncodeError, Format, Frame, Layers, Matte, Window, deflate};
 
 /// Blocks that are held in memory at once.
 const AT_ONCE: usize = 32;

@@ -7,9 +7,8 @@ use std::io::{self, Cursor, Write};
 
 use png::{BitDepth, ColorType, Decoder, Encoder, EncodingError, ScaledFloat, SrgbRenderingIntent, Transformations};
 
-use crate::load::{DecodeError, checked_pixels};
-use crate::save::{EncodeError, check_fits};
-use crate::{Display, Format, Frame, Transfer};
+use crate::sizes::{check_fits, checked_pixels};
+use crate::{DecodeError, Display, EncodeError, Format, Frame, Transfer};
 use strips::Rows;
 
 /// Writes `frame` as RGB or RGBA with an sRGB chunk, or a gAMA chunk of 1.0 if it is linear.

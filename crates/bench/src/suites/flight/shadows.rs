@@ -15,8 +15,8 @@ use std::time::{Duration, Instant};
 use lightmesh::render::PreparedScene;
 use lightmesh::{Lookup, MeshCache, Mode, Observer, Settings, Step};
 
+use super::course::{camera, frames, keys, mean, pairs, settings};
 use super::reproject::{Shot, change};
-use super::{camera, frames, keys, mean, pairs, settings};
 use crate::engine::Engine;
 use crate::measure::Silent;
 use crate::suites::subjects::Subject;

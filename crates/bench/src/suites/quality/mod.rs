@@ -17,45 +17,26 @@ mod cases;
 mod curve;
 mod errors;
 mod rival;
+mod study;
 #[cfg(test)]
 mod tests;
 
 use std::time::{Duration, Instant};
 
-use lightmesh::render::PreparedScene;
 use lightmesh::{Mode, Observer, Settings, Step};
 
-use self::cases::{Case, Emitter};
+use self::cases::Case;
 pub(super) use self::errors::visibility_rmse;
 use self::errors::{Errors, Reference};
+use self::study::{Outcome, Study};
 use super::subjects::{self, Subject};
 use super::turns::Turns;
 use crate::engine::{self, Engine};
-use crate::measure::{Measured, Silent, Variant};
-use crate::{BenchError, Findings, Key, Plan, Row};
+use crate::measure::{Silent, Variant};
+use crate::{BenchError, Findings, Plan};
 
 /// Pixels along a side, and in the short version.
 const SIDES: [u32; 2] = [512, 256];
-
-/// A scene, prepared for all cases.
-struct Study<'a> {
-    plan: &'a Plan,
-    subject: &'a Subject,
-    /// With area lights.
-    balls: PreparedScene,
-    /// With point lights.
-    points: PreparedScene,
-    side: u32,
-    reference: Reference,
-    observer: &'a dyn Observer,
-}
-
-/// A case with its results.
-struct Outcome {
-    case: Case,
-    errors: Errors,
-    measured: Measured,
-}
 
 pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
     let engines = engine::engines(plan)?;
@@ -140,41 +121,5 @@ impl Study<'_> {
         let layered = case.settings.clone().with_layers(true);
         let frame = engine.renderer.render_prepared(self.scene(case.emitter), &layered, &Silent(self.observer))?;
         Ok(Errors::between(&self.reference.frame, &frame.image)?)
-    }
-
-    fn scene(&self, emitter: Emitter) -> &PreparedScene {
-        match emitter {
-            Emitter::Ball => &self.balls,
-            Emitter::Point => &self.points,
-        }
-    }
-
-    fn variant<'v>(&'v self, engine: &'v Engine, case: &Case, settings: &Settings) -> Variant<'v> {
-        Variant { renderer: &engine.renderer, scene: self.scene(case.emitter), settings: settings.clone() }
-    }
-
-    /// A row of this scene on a device, filled by `fill`.
-    fn row(
-        &self,
-        experiment: &str,
-        engine: &Engine,
-        keys: Vec<(&'static str, Key)>,
-        fill: impl FnOnce(&mut Row),
-    ) -> Row {
-        let keys = self.keys().into_iter().chain(keys).chain(engine.keys());
-        let mut row = Row::new(experiment, keys);
-        fill(&mut row);
-        row
-    }
-
-    fn reference_row(&self) -> Row {
-        let mut row = Row::new("reference", self.keys());
-        self.reference.residue.fill(&mut row);
-        row.values.insert("samples".to_owned(), f64::from(self.reference.samples));
-        row
-    }
-
-    fn keys(&self) -> Vec<(&'static str, Key)> {
-        vec![("scene", self.subject.name.as_str().into()), ("size", f64::from(self.side).into())]
     }
 }

@@ -2,9 +2,10 @@
 
 use lightmesh::Mode;
 
+use super::cases::Case;
 use super::curve::{Cost, Point, Reach, cost_at, samples_in};
 use super::errors::Errors;
-use super::{Case, Outcome, Study};
+use super::study::{Outcome, Study};
 use crate::engine::Engine;
 use crate::measure::Silent;
 use crate::{BenchError, Findings, Picture, Row};

@@ -5,6 +5,7 @@ use lightmesh::Device;
 use lightmesh::render::Unobserved;
 
 use super::*;
+use crate::{Key, Row};
 
 fn found(plan: Plan) -> Findings {
     let mut findings = Findings::default();

@@ -14,7 +14,8 @@ use std::time::Duration;
 
 use lightmesh::{Lookup, Observer, image};
 
-use super::{Case, Method, visibility_rmse};
+use super::case::{Case, Method};
+use crate::suites::quality::visibility_rmse;
 use crate::suites::turns::Turns;
 use crate::{BenchError, Findings, Plan, Row, WHOLE, WHOLE_FRAMES};
 

@@ -10,7 +10,7 @@ use std::time::Duration;
 use lightmesh::render::PreparedScene;
 use lightmesh::{Lookup, Mode, Observer, Scene, Settings};
 
-use super::{SAMPLES, shadow_seconds};
+use super::case::{SAMPLES, shadow_seconds};
 use crate::engine::Engine;
 use crate::measure::Variant;
 use crate::suites::turns::Turns;

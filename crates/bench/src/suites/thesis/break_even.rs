@@ -17,8 +17,8 @@
 
 use std::collections::BTreeMap;
 
-use super::LIGHTS;
 use super::derived::keys;
+use super::experiments::LIGHTS;
 use super::published::{FIGURE_SCENE, LIGHTS_RADIUS};
 use crate::{Findings, Key, Row, WHOLE};
 

@@ -1,6 +1,6 @@
 //! Tables 1 and 2, from the timings.
 
-use super::TIMINGS;
+use super::experiments::TIMINGS;
 use super::published::{SCENES, TABLE_1, TABLE_2};
 use crate::{Findings, Key, Row, WHOLE};
 

@@ -16,6 +16,7 @@
 mod break_even;
 mod cuts;
 mod derived;
+mod experiments;
 mod published;
 mod runner;
 mod task;
@@ -30,15 +31,6 @@ use lightmesh::Observer;
 
 use crate::engine::{self, Engine};
 use crate::{BenchError, Findings, Plan, Suite};
-
-/// The method by scene, size, step and radius, and hard shadows.
-const TIMINGS: &str = "timings";
-/// Area shadows with few and many samples.
-const AREA_SHADOWS: &str = "figure 1";
-/// Time against the number of lights.
-const LIGHTS: &str = "figure 11";
-/// Images for growing R.
-const PICTURES: &str = "figures 12-15";
 
 pub(super) fn run(plan: &Plan, observer: &dyn Observer, findings: &mut Findings) -> Result<(), BenchError> {
     if !plan.scenes.is_empty() || plan.size.is_some() {

@@ -2,12 +2,12 @@
 
 use lightmesh::Lookup;
 
+use super::experiments::{AREA_SHADOWS, LIGHTS, PICTURES, TIMINGS};
 use super::published::{
     AREA_SAMPLES, FIGURE_SCENE, GARDEN_LIGHTS, LIGHTS_RADIUS, PICTURE_RADII, RADII, SCENES, SIZES, STEP_PARTS,
     SceneOfThesis,
 };
 use super::task::{Picture, Task, scene_with_lights};
-use super::{AREA_SHADOWS, LIGHTS, PICTURES, TIMINGS};
 use crate::Plan;
 use crate::engine::Engine;
 

@@ -31,7 +31,7 @@ use crate::{
     Animation, Camera, Instancing, Light, LightMeshDefaults, Material, Objects, Position, Surroundings, Texture,
 };
 
-/// Collects the content of a file; [`Draft::finish`] turns it into a [`Scene`].
+/// Collects the content of a file; [`Draft::finish`] turns it into a [`Scene`](crate::Scene).
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,

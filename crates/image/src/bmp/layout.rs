@@ -1,17 +1,7 @@
-//! BMP: 24 bits per pixel, uncompressed, the format of the method's first implementation.
+//! The headers of a BMP, and the sizes in them.
 //!
 //! Layout (little-endian): `BITMAPFILEHEADER` of 14 bytes, `BITMAPINFOHEADER` of 40 bytes, then the rows from bottom to
 //! top, each of blue, green, red triples and padded to a multiple of 4 bytes.
-//!
-//! The writer of the crate `image` leaves the resolution 0, so that its files differ in 8 bytes, and takes the whole picture at once.
-
-use std::io::{Cursor, Write};
-
-use image::codecs::bmp::BmpDecoder;
-
-use crate::load::{DecodeError, read_with};
-use crate::save::EncodeError;
-use crate::{Display, Format, Frame};
 
 const FILE_HEADER: u32 = 14;
 const INFO_HEADER: u32 = 40;
@@ -27,7 +17,7 @@ const RESOLUTION: i32 = 2835;
 pub struct Layout {
     width: i32,
     height: i32,
-    row: usize,
+    pub(super) row: usize,
     image: u32,
     /// Bytes of the file.
     pub file: u32,
@@ -47,7 +37,7 @@ impl Layout {
         })
     }
 
-    fn headers(&self) -> [u8; HEADERS as usize] {
+    pub(super) fn headers(&self) -> [u8; HEADERS as usize] {
         let mut bytes = [0; HEADERS as usize];
         let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
         put(0, b"BM");
@@ -68,25 +58,4 @@ impl Layout {
 /// Whether the sizes of such an image fit into the headers.
 pub(crate) fn can_hold(width: u32, height: u32) -> bool {
     Layout::new(width, height).is_some()
-}
-
-/// Writes `frame` with 8 bits per channel; the format cannot record the transfer function.
-pub fn write(frame: &Frame, display: &Display, mut output: impl Write) -> Result<(), EncodeError> {
-    let layout = Layout::new(frame.width(), frame.height());
-    let layout = layout.ok_or(EncodeError::TooLarge { limit: LIMIT })?;
-    output.write_all(&layout.headers())?;
-    let mut bytes = Vec::with_capacity(layout.row);
-    for y in (0..frame.height() as usize).rev() {
-        bytes.clear();
-        display.encode_row(frame, y, &mut bytes);
-        bytes.chunks_exact_mut(3).for_each(|pixel| pixel.swap(0, 2));
-        bytes.resize(layout.row, 0);
-        output.write_all(&bytes)?;
-    }
-    Ok(())
-}
-
-/// Reads any BMP of 1 to 32 bits per pixel, as sRGB.
-pub(crate) fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
-    read_with(Format::Bmp, BmpDecoder::new(Cursor::new(bytes)))
 }
