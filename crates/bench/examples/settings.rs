@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lightmesh::render::{AmbientSource, Quality};
-use lightmesh::request::table::{Field, Group, Shape};
-use lightmesh::request::{FIELDS, Words, field};
+use lightmesh::request::table::{Group, Shape};
+use lightmesh::request::{FIELDS, Field, Words, field};
 use lightmesh::{Lookup, Mode};
 
 /// What takes settings: the name of its type, that of its list, the first sentence of the type, and the groups.

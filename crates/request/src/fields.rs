@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser::SerializeMap};
 
 use crate::error::RequestError;
-use crate::request::{FIELDS, Request};
-use crate::table::{Field, Group, Value};
+use crate::request::{FIELDS, Field, Request};
+use crate::table::{Group, Kind, Value};
 
 /// Names at least this much alike are suggested for each other.
 const ALIKE: f64 = 0.75;
@@ -41,7 +41,11 @@ impl Request {
             return Err(RequestError::Unknown { name: name.to_owned(), similar });
         };
         let value = value.into();
-        field.apply(self, &value).map_err(|problem| RequestError::Value { setting: field.name, value, problem })
+        let problem = match field.apply(self, &value) {
+            Ok(()) => return Ok(()),
+            Err(problem) => advice(field, problem),
+        };
+        Err(RequestError::Value { setting: field.name, value, problem })
     }
 
     /// Checks that settings can be given together.
@@ -60,64 +64,6 @@ impl Request {
             }
         }
         Ok(())
-    }
-}
-
-impl Field {
-    /// Sets it in a request.
-    fn apply(&self, request: &mut Request, value: &Value) -> Result<(), String> {
-        let whole = value.whole();
-        if let (Some(range), Some(whole)) = (&self.range, whole) {
-            let (first, last) = (i64::from(*range.start()), i64::from(*range.end()));
-            if !(first..=last).contains(&whole) {
-                return Err(format!("{whole} is not in {first}..={last}"));
-            }
-        }
-        (self.set)(request, value)
-    }
-
-    /// Checks a value that is typed.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn check(&self, text: &str) -> Result<(), String> {
-        self.apply(&mut Request::default(), &Value::Text(text.to_owned()))
-    }
-}
-
-impl From<bool> for Value {
-    fn from(is_on: bool) -> Value {
-        Value::Switch(is_on)
-    }
-}
-
-impl From<i64> for Value {
-    fn from(whole: i64) -> Value {
-        Value::Whole(whole)
-    }
-}
-
-impl From<f64> for Value {
-    fn from(number: f64) -> Value {
-        Value::Number(number)
-    }
-}
-
-impl From<&str> for Value {
-    fn from(text: &str) -> Value {
-        Value::Text(text.to_owned())
-    }
-}
-
-impl From<String> for Value {
-    fn from(text: String) -> Value {
-        Value::Text(text)
-    }
-}
-
-impl<T: Into<Value>> From<Vec<T>> for Value {
-    fn from(items: Vec<T>) -> Value {
-        Value::List(items.into_iter().map(Into::into).collect())
     }
 }
 
@@ -140,6 +86,16 @@ impl<'de> Deserialize<'de> for Request {
         }
         request.check().map_err(de::Error::custom)?;
         Ok(request)
+    }
+}
+
+/// What is wrong with a value, or the words that can be chosen.
+fn advice(field: &Field, problem: String) -> String {
+    let choices = if field.kind == Kind::Value { (field.choices)() } else { Vec::new() };
+    let names: Vec<&str> = choices.iter().map(|choice| choice.name).collect();
+    match names.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("choose {} or {last}", others.join(", ")),
+        _ => problem,
     }
 }
 

@@ -4,13 +4,13 @@ use lightmesh_image::{Description, Format, SaveOptions};
 use lightmesh_render::{Frame, PreparedScene, RenderError, Settings};
 use lightmesh_scene::{Scene, SceneFormat, Up};
 
-use crate::error::RequestError;
+use crate::error::{RequestError, StageError};
 use crate::expose::Metering;
 use crate::files::save_options;
 use crate::host::Host;
 use crate::request::Request;
 use crate::settings::settings;
-use crate::stage::{StageError, Staging};
+use crate::stage::Staging;
 use crate::value::Exposure;
 
 /// A picture of a scene that is given apart.

@@ -13,6 +13,7 @@
 #![forbid(unsafe_code)]
 
 mod clipping;
+mod context;
 mod error;
 mod expose;
 mod fields;
@@ -24,6 +25,7 @@ mod items;
 mod manifest;
 mod mesh_file;
 mod open;
+mod order;
 mod plan;
 mod report;
 mod request;
@@ -37,16 +39,15 @@ mod told;
 pub mod value;
 mod words;
 
-pub use error::{Error, RequestError};
+pub use error::{Error, ManifestError, MovieChoiceError, MovieError, RequestError, StageError};
 pub use fields::{field, nearest};
 pub use host::{BUILDING, FrameDone, Host, RENDERING};
 pub use image_plan::{ImagePlan, StagedImage, StoragePlan};
-pub use manifest::ManifestError;
 pub use open::{FilmFrames, Picture, film, picture, sun_hours};
-pub use plan::{Order, Plan, format_of, load_options};
-pub use request::{FIELDS, Request};
+pub use order::{Order, format_of};
+pub use plan::{Plan, load_options};
+pub use request::{FIELDS, Field, Request};
 pub use save::describe;
 pub use session::{Frames, Session};
-pub use stage::StageError;
 pub use told::Told;
 pub use words::{Name, Words};

@@ -1,53 +1,19 @@
 //! From a request to a plan: everything that can be checked before the work begins is checked here.
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
 
-use lightmesh_files::directory;
 use lightmesh_render::{Acceleration, Settings};
-use lightmesh_scene::{CreaseAngle, Instancing, LoadOptions, SceneFormat};
+use lightmesh_scene::{CreaseAngle, Instancing, LoadOptions};
 
 use crate::error::RequestError;
-use crate::files::{Files, PictureFiles, is_standard};
+use crate::files::PictureFiles;
 use crate::film::Film;
+use crate::order::Order;
 use crate::request::Request;
 use crate::settings::settings;
 use crate::stage::Staging;
 use crate::sun::SunStudy;
 use crate::value::Smooth;
-
-/// What is asked for: a picture, a film or a study of a scene, and its files.
-#[derive(Clone, Debug)]
-pub struct Order {
-    /// The file of the scene, or the name of a built-in one; `-` is standard input.
-    pub scene: PathBuf,
-    /// The request.
-    pub request: Request,
-    /// The files to write.
-    pub files: Files,
-}
-
-impl Order {
-    /// The scene's format; `None` if it is built in, or unknown.
-    pub fn format(&self) -> Option<SceneFormat> {
-        format_of(&self.scene, self.request.scene_format)
-    }
-
-    /// The folder of the scene.
-    pub(crate) fn folder(&self) -> &Path {
-        directory(&self.scene)
-    }
-
-    /// Whether the scene comes from standard input.
-    pub(crate) fn is_from_stdin(&self) -> bool {
-        is_standard(&self.scene)
-    }
-}
-
-/// The format of a scene: the given one, or by the extension.
-pub fn format_of(scene: &Path, given: Option<SceneFormat>) -> Option<SceneFormat> {
-    given.or_else(|| SceneFormat::from_path(scene))
-}
 
 /// How a scene is read.
 pub fn load_options(request: &Request, smooth: Option<CreaseAngle>, instancing: Instancing) -> LoadOptions {

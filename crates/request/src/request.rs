@@ -7,11 +7,14 @@ use lightmesh_render::{Acceleration, AmbientSource, Crop, Device, Filter, Lookup
 use lightmesh_scene::{Falloff, Instancing, SceneFormat, Weight};
 
 use crate::items::Slot;
-use crate::table::{Field, Group};
+use crate::table::{FieldOf, Group};
 use crate::value::{
     Background, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec, Positive,
     Size, SkySpec, Smooth, SunSpec, Switch, UpChoice,
 };
+
+/// A setting: a field of [`Request`].
+pub type Field = FieldOf<Request>;
 
 /// Declares the fields of [`Request`] and the table of them. An entry is
 ///
@@ -43,7 +46,7 @@ macro_rules! settings {
         }
 
         /// All settings, in the order in which they are listed.
-        pub static FIELDS: &[Field] = &[$(Field {
+        pub static FIELDS: &[Field] = &[$(FieldOf {
             name: stringify!($name),
             doc: concat!($($doc),+),
             group: Group::$group,

@@ -9,11 +9,11 @@ use lightmesh_render::Frame;
 use lightmesh_scene::{Camera, Scene};
 
 use crate::clipping;
+use crate::context::Context;
 use crate::error::Error;
 use crate::expose::Metering;
 use crate::files::{PictureFiles, json, publish};
 use crate::report::Report;
-use crate::session::Context;
 
 /// Writes all files of an image, and warns of what may be wrong with it.
 pub(crate) fn save(

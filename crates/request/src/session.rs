@@ -3,33 +3,22 @@
 use std::sync::Arc;
 
 use lightmesh_image::Format;
-use lightmesh_render::{Frame, PreparedScene, RenderError, Renderer, Settings};
+use lightmesh_render::{Frame, PreparedScene, Renderer, Settings};
 use lightmesh_scene::Scene;
 
+use crate::context::{Context, Ready};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::film::{self, FrameRange, FrameRenderer, FrameWriter, RenderedFrame};
-use crate::host::{BUILDING, Host, RENDERING};
+use crate::host::{BUILDING, Host};
 use crate::mesh_file::Mesh;
 use crate::plan::Plan;
 use crate::save::save;
 use crate::sun::{self, SunHours};
 
-/// What work on a plan needs.
-#[derive(Clone, Copy)]
-pub(crate) struct Context<'a> {
-    pub(crate) renderer: &'a Renderer,
-    pub(crate) plan: &'a Plan,
-    /// Seconds that it took to read the scene.
-    pub(crate) load: f64,
-    pub(crate) host: &'a dyn Host,
-}
-
 /// A scene that is staged and prepared as planned.
 pub struct Session {
-    pub(crate) plan: Arc<Plan>,
-    pub(crate) prepared: PreparedScene,
-    pub(crate) metering: Metering,
+    ready: Ready,
     load: f64,
 }
 
@@ -64,21 +53,21 @@ impl Session {
         let metering = Metering::of_staged(&mut scene, &staged, plan.files.exposure, is_linear, transparent);
         let prepared = host.during(BUILDING, || renderer.prepare(&scene, &plan.settings, host))?;
         film::explain(&scene, plan.film.is_some(), host);
-        Ok(Session { plan: Arc::new(plan), prepared, metering, load })
+        Ok(Session { ready: Ready { plan: Arc::new(plan), prepared, metering }, load })
     }
 
     fn context<'a>(&'a self, renderer: &'a Renderer, host: &'a dyn Host) -> Context<'a> {
-        Context { renderer, plan: &self.plan, load: self.load, host }
+        Context { renderer, plan: &self.ready.plan, load: self.load, host }
     }
 
     /// The plan.
     pub fn plan(&self) -> &Plan {
-        &self.plan
+        &self.ready.plan
     }
 
     /// The scene as it is rendered.
     pub fn scene(&self) -> &Scene {
-        &self.prepared.scene
+        &self.ready.prepared.scene
     }
 
     /// Writes the hours of direct sun, if they are asked for; returns what was done.
@@ -86,8 +75,8 @@ impl Session {
     /// # Errors
     /// [`Error`].
     pub fn write_sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<Option<String>, Error> {
-        match &self.plan.sun {
-            Some(study) => sun::write_hours(study, &self.prepared, self.context(renderer, host)),
+        match &self.ready.plan.sun {
+            Some(study) => sun::write_hours(study, &self.ready.prepared, self.context(renderer, host)),
             None => Ok(None),
         }
     }
@@ -98,7 +87,12 @@ impl Session {
     /// [`Error`].
     pub fn picture(&self, renderer: &Renderer, host: &dyn Host) -> Result<(Frame, f32), Error> {
         let render = |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, host);
-        self.context(renderer, host).picture(&self.prepared, &self.plan.settings, &self.metering, render)
+        self.context(renderer, host).picture(
+            &self.ready.prepared,
+            &self.ready.plan.settings,
+            &self.ready.metering,
+            render,
+        )
     }
 
     /// Renders the picture and writes its files.
@@ -106,7 +100,7 @@ impl Session {
     /// # Errors
     /// [`Error`].
     pub fn write_picture(self, renderer: &Renderer, host: &dyn Host) -> Result<Frame, Error> {
-        let Session { plan, prepared, metering, load } = self;
+        let Session { ready: Ready { plan, prepared, metering }, load } = self;
         let context = Context { renderer, plan: &plan, load, host };
         let mut mesh = Mesh::open(&plan, (renderer, &prepared), false, host)?;
         let has_file = mesh.has_file();
@@ -130,7 +124,7 @@ impl Session {
     /// # Errors
     /// [`Error`]; frames that are finished stay.
     pub fn write_film(&self, range: FrameRange, renderer: &Renderer, host: &dyn Host) -> Result<String, Error> {
-        film::write(self, range, self.context(renderer, host))
+        film::write(&self.ready, range, self.context(renderer, host))
     }
 
     /// The frames of a film in `range`, which are rendered one by one, and written if the plan has files. Exposure and step are chosen for the whole
@@ -140,17 +134,23 @@ impl Session {
     /// [`Error`].
     pub fn frames(&self, mut range: FrameRange, renderer: &Renderer, host: &dyn Host) -> Result<Frames, Error> {
         let context = self.context(renderer, host);
-        let (frames, writer) = if self.plan.order.files.output.is_some() {
-            let (frames, writer) = film::begin(self, &mut range, context)?;
+        let (frames, writer) = if self.ready.plan.order.files.output.is_some() {
+            let (frames, writer) = film::begin(&self.ready, &mut range, context)?;
             (frames, Some(writer))
         } else {
-            let mut frames = FrameRenderer::new(self, &range, context)?;
+            let mut frames = FrameRenderer::new(&self.ready, &range, context)?;
             if !range.numbers.is_empty() {
                 frames.keep(host.cancellable(|| frames.chosen_across(context))?);
             }
             (frames, None)
         };
-        Ok(Frames { plan: Arc::clone(&self.plan), frames, writer, load: self.load, left: range.numbers.into_iter() })
+        Ok(Frames {
+            plan: Arc::clone(&self.ready.plan),
+            frames,
+            writer,
+            load: self.load,
+            left: range.numbers.into_iter(),
+        })
     }
 
     /// The hours of direct sun on what the picture shows, if a sun study is asked for.
@@ -159,7 +159,7 @@ impl Session {
     /// [`Error`].
     pub fn sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<Option<SunHours>, Error> {
         let context = self.context(renderer, host);
-        self.plan.sun.as_ref().map(|study| SunHours::of_study(study, &self.prepared, context)).transpose()
+        self.ready.plan.sun.as_ref().map(|study| SunHours::of_study(study, &self.ready.prepared, context)).transpose()
     }
 }
 
@@ -213,34 +213,4 @@ impl Drop for Frames {
             let _ = writer.stop();
         }
     }
-}
-
-impl Context<'_> {
-    /// Renders an image by `render`; also returns its exposure in stops.
-    pub(crate) fn picture(
-        self,
-        prepared: &PreparedScene,
-        settings: &Settings,
-        metering: &Metering,
-        mut render: impl FnMut(&PreparedScene, &Settings) -> Result<Frame, RenderError>,
-    ) -> Result<(Frame, f32), Error> {
-        let Context { plan, load, host, .. } = self;
-        let (mut frame, stops) = metering.picture(prepared, settings, host, |prepared, settings| {
-            host.during(RENDERING, || host.cancellable(|| render(prepared, settings)))
-        })?;
-        if plan.settings.partial {
-            host.remark(rows(&frame));
-        } else if host.cancelled() {
-            return Err(RenderError::Cancelled.into());
-        }
-        frame.stats.seconds.load = load;
-        Ok((frame, stops))
-    }
-}
-
-/// How much of an image is finished.
-fn rows(frame: &Frame) -> String {
-    let ([_, height], finished) = (frame.size(), frame.finished_rows());
-    let finished = if finished == height { "all".to_owned() } else { format!("{finished} of") };
-    format!("{finished} {height} rows are finished")
 }

@@ -1,13 +1,12 @@
 //! The table of all settings: what each is called, what it means, and how it is read and shown. Faces are made from it.
 //!
-//! The macro beside it declares the type [`Request`] and, for each of its fields, a row of this table. So a new setting is one entry there, and
+//! The macro beside it declares the type `Request` and, for each of its fields, a row of this table. So a new setting is one entry there, and
 //! then it is a flag with its help, a keyword argument with its annotation, a key of serialised requests, and a line of a film's manifest.
 
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use crate::request::Request;
 use crate::value::Switch;
 use crate::words::Name;
 
@@ -67,9 +66,9 @@ pub struct Choice {
     pub help: &'static str,
 }
 
-/// A setting: a field of [`Request`].
+/// A setting: a field of a type of requests.
 #[derive(Debug)]
-pub struct Field {
+pub struct FieldOf<R> {
     /// Its name.
     pub name: Name,
     /// What it means: sentences in which names of settings stand in backquotes.
@@ -96,8 +95,8 @@ pub struct Field {
     pub requires: Option<Name>,
     /// Whether the bytes of images depend on it. Others say by what and how fast they are made.
     pub decides_bytes: bool,
-    pub(crate) set: fn(&mut Request, &Value) -> Result<(), String>,
-    pub(crate) get: fn(&Request) -> Option<Value>,
+    pub(crate) set: fn(&mut R, &Value) -> Result<(), String>,
+    pub(crate) get: fn(&R) -> Option<Value>,
 }
 
 /// The type of a value that a program gives, besides text.
@@ -160,17 +159,17 @@ impl Value {
     }
 }
 
-impl Field {
+impl<R: Default> FieldOf<R> {
     /// The value that holds if none is given, as it is typed; `None` if that depends on the scene or on other settings.
     pub fn default(&self) -> Option<String> {
         match self.kind {
-            Kind::Value => (self.get)(&Request::default()).map(|value| value.text(",")),
+            Kind::Value => (self.get)(&R::default()).map(|value| value.text(",")),
             Kind::Switch | Kind::List => None,
         }
     }
 
     /// Its value in a request, as it is typed, once for each time; none if it is not given.
-    pub fn texts(&self, request: &Request) -> Vec<String> {
+    pub fn texts(&self, request: &R) -> Vec<String> {
         match (self.get)(request) {
             None => Vec::new(),
             Some(Value::List(items)) => items.iter().map(|item| item.text(",")).collect(),
@@ -179,7 +178,63 @@ impl Field {
     }
 
     /// Whether its value is not the one that holds if none is given.
-    pub fn is_given(&self, request: &Request) -> bool {
-        (self.get)(request) != (self.get)(&Request::default())
+    pub fn is_given(&self, request: &R) -> bool {
+        (self.get)(request) != (self.get)(&R::default())
+    }
+
+    /// Sets it in a request.
+    pub(crate) fn apply(&self, request: &mut R, value: &Value) -> Result<(), String> {
+        let whole = value.whole();
+        if let (Some(range), Some(whole)) = (&self.range, whole) {
+            let (first, last) = (i64::from(*range.start()), i64::from(*range.end()));
+            if !(first..=last).contains(&whole) {
+                return Err(format!("{whole} is not in {first}..={last}"));
+            }
+        }
+        (self.set)(request, value)
+    }
+
+    /// Checks a value that is typed.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check(&self, text: &str) -> Result<(), String> {
+        self.apply(&mut R::default(), &Value::Text(text.to_owned()))
+    }
+}
+
+impl From<bool> for Value {
+    fn from(is_on: bool) -> Value {
+        Value::Switch(is_on)
+    }
+}
+
+impl From<i64> for Value {
+    fn from(whole: i64) -> Value {
+        Value::Whole(whole)
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Value {
+        Value::Number(number)
+    }
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Value {
+        Value::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Value {
+    fn from(text: String) -> Value {
+        Value::Text(text)
+    }
+}
+
+impl<T: Into<Value>> From<Vec<T>> for Value {
+    fn from(items: Vec<T>) -> Value {
+        Value::List(items.into_iter().map(Into::into).collect())
     }
 }

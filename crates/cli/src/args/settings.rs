@@ -5,8 +5,8 @@ use std::marker::PhantomData;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
 use lightmesh::request::files::Files;
-use lightmesh::request::table::{Field, Group, Kind, Minus};
-use lightmesh::request::{FIELDS, Name, Request, Words, field};
+use lightmesh::request::table::{Group, Kind, Minus};
+use lightmesh::request::{FIELDS, Field, Name, Request, Words, field};
 
 /// Settings of some groups.
 pub(crate) trait Groups {

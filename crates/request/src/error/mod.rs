@@ -1,6 +1,10 @@
 //! What can end the work on a request.
 
+mod manifest;
+mod movie;
+mod output;
 mod request;
+mod stage;
 
 use std::error::Error as Source;
 
@@ -8,13 +12,14 @@ use lightmesh_image::SaveError;
 use lightmesh_render::{MeshFileError, MeshSaveError, RenderError};
 use lightmesh_scene::{CameraError, LoadError};
 
-use crate::files::OutputError;
-use crate::film::{MovieChoiceError, MovieError};
-use crate::manifest::ManifestError;
-use crate::stage::StageError;
 use crate::told::{Told, display_by_fields};
 use crate::words::{Name, Words};
+pub use manifest::ManifestError;
+pub(crate) use movie::FFMPEG;
+pub use movie::{MovieChoiceError, MovieError};
+pub use output::OutputError;
 pub use request::RequestError;
+pub use stage::StageError;
 
 /// Why work on a request ended early.
 #[derive(Debug)]

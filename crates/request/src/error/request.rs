@@ -7,11 +7,8 @@ use lightmesh_image::SaveError;
 use lightmesh_render::Crop;
 use lightmesh_scene::CameraError;
 
-use crate::fields::field;
-use crate::files::OutputError;
-use crate::film::MovieChoiceError;
-use crate::manifest::ManifestError;
-use crate::table::{Kind, Value};
+use super::{ManifestError, MovieChoiceError, OutputError};
+use crate::table::Value;
 use crate::told::{Told, display_by_fields};
 use crate::value::{Frames, SunSpec};
 use crate::words::{Name, Words};
@@ -131,7 +128,7 @@ impl Told for RequestError {
                 None => format!("there is no setting {name}"),
             },
             RequestError::Value { setting, value, problem } => {
-                format!("{} cannot be {}: {}", of(setting), shown(value), advice(setting, problem))
+                format!("{} cannot be {}: {}", of(setting), shown(value), problem)
             }
             RequestError::Conflict { first, second } => {
                 format!("{} and {} cannot be given together; leave out one of them", of(first), of(second))
@@ -228,17 +225,6 @@ fn shown(value: &Value) -> String {
         Value::Number(number) => number.to_string(),
         Value::Text(text) => format!("`{text}`"),
         Value::List(items) => format!("[{}]", items.iter().map(shown).collect::<Vec<_>>().join(", ")),
-    }
-}
-
-/// What is wrong with a value, or the words that can be chosen.
-fn advice(setting: Name, problem: &str) -> String {
-    let choices = field(setting).filter(|field| field.kind == Kind::Value);
-    let choices = choices.map(|field| (field.choices)()).unwrap_or_default();
-    let names: Vec<&str> = choices.iter().map(|choice| choice.name).collect();
-    match names.split_last() {
-        Some((last, others)) if !others.is_empty() => format!("choose {} or {last}", others.join(", ")),
-        _ => problem.to_owned(),
     }
 }
 

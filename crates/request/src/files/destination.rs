@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use lightmesh_files::{Output, Ready, TargetError, identity, is_standard_output};
 
-use super::outputs::OutputError;
+use crate::error::OutputError;
 use crate::words::Name;
 
 /// What stands for standard input and output on the command line. A file of this name is `./-`.

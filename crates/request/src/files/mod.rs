@@ -7,7 +7,9 @@ mod picture;
 use std::path::{Path, PathBuf};
 
 pub use destination::{Destination, check_one_on_stdout, is_standard};
-pub use outputs::{OutputError, Outputs, input, json, publish, ready};
+pub use outputs::{Outputs, input, json, publish, ready};
+
+pub use crate::error::OutputError;
 pub use picture::PictureFiles;
 pub(crate) use picture::{hours_of_sun, save_options};
 

@@ -6,10 +6,10 @@ use lightmesh_files::check_writable;
 use lightmesh_image::{Display, ExrOptions, Format, SaveError, SaveOptions, check_image};
 
 use super::destination::{Destination, check_one_on_stdout, is_standard};
-use super::outputs::{OutputError, Outputs, input};
-use crate::error::RequestError;
+use super::outputs::{Outputs, input};
+use crate::error::{OutputError, RequestError};
 use crate::film::Container;
-use crate::plan::Order;
+use crate::order::Order;
 use crate::request::Request;
 use crate::value::{Background, Exposure, Switch, numbered};
 use crate::words::Name;

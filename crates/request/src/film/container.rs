@@ -1,76 +1,10 @@
 //! Films that go to one file, a movie.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::plan::Order;
-use crate::told::{Told, display_by_fields};
+use crate::error::MovieChoiceError;
+use crate::order::Order;
 use crate::value::Background;
-use crate::words::{Name, Words};
-
-/// Why a film cannot become a movie.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum MovieChoiceError {
-    /// It has no frames that could be kept.
-    Whole {
-        /// What would keep them.
-        setting: Name,
-        /// The movie.
-        path: PathBuf,
-    },
-    /// It was rendered before.
-    Exists {
-        /// The movie.
-        path: PathBuf,
-    },
-    /// Movies have no alpha.
-    Alpha {
-        /// The movie.
-        path: PathBuf,
-    },
-    /// The format is that of an image.
-    Format {
-        /// The movie.
-        path: PathBuf,
-    },
-}
-
-impl Told for MovieChoiceError {
-    fn told(&self, words: Words) -> String {
-        let frames = || words.with("output", "film.####.png");
-        let movie = |path: &Path| words.with("output", path.display());
-        match self {
-            MovieChoiceError::Whole { setting, path } => {
-                let setting = words.of(setting);
-                format!(
-                    "{setting} keeps frames, but {} is one file, which is written as a whole; write frames, as in {}, and join them with \
-                     ffmpeg, or leave out {setting}",
-                    movie(path),
-                    frames()
-                )
-            }
-            MovieChoiceError::Exists { path } => {
-                format!("{} exists; add {} to replace it", path.display(), words.on("overwrite"))
-            }
-            MovieChoiceError::Alpha { path } => format!(
-                "{} cannot be transparent: movies have no alpha; write png or exr frames, as in {}, or choose a colour ({})",
-                movie(path),
-                frames(),
-                words.of("background")
-            ),
-            MovieChoiceError::Format { path } => format!(
-                "{} is a movie, but {} names an image format; leave it out, or write frames, as in {}",
-                movie(path),
-                words.of("format"),
-                frames()
-            ),
-        }
-    }
-}
-
-display_by_fields!(MovieChoiceError);
-
-impl std::error::Error for MovieChoiceError {}
 
 /// The kind of a movie file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

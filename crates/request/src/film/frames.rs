@@ -7,13 +7,13 @@ use lightmesh_render::{Crop, Frame, PreparedScene, RenderError, Settings, Step};
 use lightmesh_scene::{Animation, Camera, Scene};
 
 use super::{FrameRange, Motion};
+use crate::context::{Context, Ready};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::host::{BUILDING, Host, Quiet};
 use crate::manifest::Chosen;
 use crate::mesh_file::Mesh;
 use crate::plan::Plan;
-use crate::session::{Context, Session};
 use crate::sun;
 
 /// Frames across a film from which its exposure and step are chosen.
@@ -51,14 +51,14 @@ pub struct FrameRenderer {
 }
 
 impl FrameRenderer {
-    /// For the film of a session.
-    pub(crate) fn new(session: &Session, range: &FrameRange, context: Context) -> Result<FrameRenderer, Error> {
-        let plan = Arc::clone(&session.plan);
+    /// For the film of a ready.
+    pub(crate) fn new(ready: &Ready, range: &FrameRange, context: Context) -> Result<FrameRenderer, Error> {
+        let plan = Arc::clone(&ready.plan);
         let motion = plan.film.as_ref().ok_or(RequestError::NoFilm)?.motion;
-        let base = session.prepared.clone();
+        let base = ready.prepared.clone();
         let moves = matches!(motion, Motion::Scene(_)) && base.scene.animation().is_some_and(Animation::moves_surfaces);
         let mesh = Mesh::open(&plan, (context.renderer, &base), moves, context.host)?;
-        let (settings, metering) = (plan.settings.clone(), session.metering.clone());
+        let (settings, metering) = (plan.settings.clone(), ready.metering.clone());
         Ok(FrameRenderer { plan, motion, last: range.last, before: base.clone(), base, settings, metering, mesh })
     }
 

@@ -6,9 +6,9 @@ mod movie;
 mod plan;
 mod writer;
 
-pub use container::{Container, MovieChoiceError};
+pub use container::Container;
 pub use frames::{FrameRenderer, RenderedFrame};
 pub(crate) use frames::{explain, summary};
-pub use movie::{MovieError, check_encoder};
+pub use movie::check_encoder;
 pub use plan::{Film, FrameRange, Motion};
 pub(crate) use writer::{FrameWriter, begin, write};

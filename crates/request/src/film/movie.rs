@@ -12,20 +12,16 @@ use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::thread::{self, JoinHandle};
 
-use lightmesh_files::{Output, TargetError, WriteError};
+use lightmesh_files::{Output, WriteError};
 use lightmesh_image::{BitDepth, Display, Frame};
 use lightmesh_render::RenderError;
 
 use super::Container;
-use crate::error::Error;
-use crate::files::{OutputError, publish};
+use crate::error::{Error, FFMPEG, MovieError, OutputError};
+use crate::files::publish;
 use crate::host::Host;
-use crate::plan::Order;
-use crate::told::{Told, display_by_fields};
-use crate::words::Words;
+use crate::order::Order;
 
-/// Names the program that encodes.
-const VARIABLE: &str = "LIGHTMESH_FFMPEG";
 /// The program, unless another is named.
 const PROGRAM: &str = "ffmpeg";
 /// The last bytes of what it says, which are quoted if it fails.
@@ -36,105 +32,6 @@ const FILTER: &str = "scale=out_color_matrix=bt709:out_range=tv,\
 /// Colours are those of high-definition television, with its matrix: what players assume, and what the codes are converted by.
 const COLOURS: [&str; 10] =
     ["-vf", FILTER, "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"];
-
-/// Why a movie cannot be encoded.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum MovieError {
-    /// There is no such program.
-    NoProgram {
-        /// The movie.
-        path: PathBuf,
-        /// The program.
-        program: String,
-        /// The system's message.
-        reason: io::Error,
-    },
-    /// It lacks the encoder.
-    NoEncoder {
-        /// The movie.
-        path: PathBuf,
-        /// The program.
-        program: String,
-        /// The encoder.
-        encoder: &'static str,
-    },
-    /// It ended before the movie did.
-    Failed {
-        /// The movie.
-        path: PathBuf,
-        /// The program.
-        program: String,
-        /// How it ended.
-        status: ExitStatus,
-        /// The end of its messages.
-        said: String,
-    },
-    /// It cannot be reached.
-    Lost {
-        /// The movie.
-        path: PathBuf,
-        /// The program.
-        program: String,
-        /// The system's message.
-        reason: io::Error,
-    },
-    /// The movie is a pipe or a device.
-    NoFile {
-        /// The movie.
-        path: PathBuf,
-    },
-    /// The movie cannot be written.
-    Target(TargetError),
-}
-
-impl Told for MovieError {
-    fn told(&self, words: Words) -> String {
-        let frames = words.with("output", "film.####.png");
-        match self {
-            MovieError::NoProgram { path, program, reason } => format!(
-                "{} needs {program} to encode it, but {program} does not start ({reason}); install ffmpeg, name it by {VARIABLE}, or \
-                 write frames, as in {frames}",
-                path.display()
-            ),
-            MovieError::NoEncoder { path, program, encoder } => format!(
-                "{} needs the encoder {encoder}, but {program} lacks it; install an ffmpeg with it, name that by {VARIABLE}, or write \
-                 frames, as in {frames}",
-                path.display()
-            ),
-            MovieError::Failed { path, program, status, said } => format!(
-                "cannot write {}: {program} failed ({status}): {said}; check the free disk space, or write frames, as in {frames}",
-                path.display()
-            ),
-            MovieError::Lost { path, program, reason } => format!(
-                "cannot write {}: {program} cannot be reached ({reason}); try again, or write frames, as in {frames}",
-                path.display()
-            ),
-            MovieError::NoFile { path } => {
-                format!("cannot write {}: ffmpeg must be able to seek in a movie; name a regular file", path.display())
-            }
-            MovieError::Target(error) => error.to_string(),
-        }
-    }
-}
-
-display_by_fields!(MovieError);
-
-impl std::error::Error for MovieError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            MovieError::NoProgram { reason, .. } | MovieError::Lost { reason, .. } => Some(reason),
-            MovieError::Target(error) => error.source(),
-            _ => None,
-        }
-    }
-}
-
-impl From<TargetError> for MovieError {
-    fn from(error: TargetError) -> MovieError {
-        MovieError::Target(error)
-    }
-}
 
 /// Checks that a movie can be encoded on this machine.
 pub fn check_encoder(order: &Order, container: Container) -> Result<(), MovieError> {
@@ -148,7 +45,7 @@ pub fn check_encoder(order: &Order, container: Container) -> Result<(), MovieErr
 }
 
 fn program() -> OsString {
-    env::var_os(VARIABLE).filter(|name| !name.is_empty()).unwrap_or_else(|| PROGRAM.into())
+    env::var_os(FFMPEG).filter(|name| !name.is_empty()).unwrap_or_else(|| PROGRAM.into())
 }
 
 fn name(program: &OsStr) -> String {

@@ -8,7 +8,7 @@ use super::Container;
 use crate::error::RequestError;
 use crate::files::{Destination, PictureFiles};
 use crate::manifest::{self, Record};
-use crate::plan::Order;
+use crate::order::Order;
 use crate::sun::SunStudy;
 use crate::value::{FrameRate, Frames};
 

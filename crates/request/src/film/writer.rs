@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use super::movie::Movie;
 use super::{Film, FrameRange, FrameRenderer, RenderedFrame, summary};
+use crate::context::{Context, Ready};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::files::PictureFiles;
@@ -14,7 +15,6 @@ use crate::host::FrameDone;
 use crate::manifest::Manifest;
 use crate::plan::Plan;
 use crate::save::save;
-use crate::session::{Context, Session};
 use crate::words::Name;
 
 /// Frames that are rendered and wait to be written, besides the one that is.
@@ -32,17 +32,17 @@ struct Finished {
 
 /// Begins a film with files: what is finished is taken out of `range`. Exposure and step hold for all frames.
 pub(crate) fn begin(
-    session: &Session,
+    ready: &Ready,
     range: &mut FrameRange,
     context: Context,
 ) -> Result<(FrameRenderer, FrameWriter), Error> {
-    let (plan, host) = (Arc::clone(&session.plan), context.host);
+    let (plan, host) = (Arc::clone(&ready.plan), context.host);
     let film = plan.film.as_ref().ok_or(RequestError::NoFilm)?;
-    let mut manifest = Manifest::begin(&plan.order, film, &session.prepared.scene, range, host)?;
+    let mut manifest = Manifest::begin(&plan.order, film, &ready.prepared.scene, range, host)?;
     let display = plan.files.options.display;
     let movie = plan.files.movie.map(|container| Movie::begin(&plan.order, container, display, host)).transpose()?;
     let begin = Instant::now();
-    let mut renderer = FrameRenderer::new(session, range, context)?;
+    let mut renderer = FrameRenderer::new(ready, range, context)?;
     // A request to end leaves time to record what is finished.
     host.cancellable(|| -> Result<(), Error> {
         if manifest.chosen().is_none() && !range.numbers.is_empty() {
@@ -57,14 +57,14 @@ pub(crate) fn begin(
 }
 
 /// Renders the frames that are left, and writes their files. Returns what was done.
-pub(crate) fn write(session: &Session, mut range: FrameRange, context: Context) -> Result<String, Error> {
+pub(crate) fn write(ready: &Ready, mut range: FrameRange, context: Context) -> Result<String, Error> {
     let start = Instant::now();
-    let (mut renderer, writer) = begin(session, &mut range, context)?;
+    let (mut renderer, writer) = begin(ready, &mut range, context)?;
     context.host.cancellable(|| {
         both(&mut renderer, writer, &range, context)?;
         if range.numbers.is_empty() { Ok(()) } else { renderer.save_mesh(context.host) }
     })?;
-    Ok(summary(&range, start.elapsed(), &session.prepared.scene.name, context.load))
+    Ok(summary(&range, start.elapsed(), &ready.prepared.scene.name, context.load))
 }
 
 /// Renders frames on this thread, and writes them on another one.

@@ -20,19 +20,17 @@ mod scene;
 mod settings;
 
 use std::collections::BTreeMap;
-use std::error::Error as Source;
 use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use lightmesh_files::{PublishError, Ready, WriteError, directory, publish_record};
+use lightmesh_files::{Ready, directory, publish_record};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3;
 
+use crate::error::ManifestError;
 use crate::files::json;
-use crate::plan::Order;
-use crate::told::{Told, display_by_fields};
-use crate::words::{Name, Words};
+use crate::order::Order;
 pub(crate) use record::Manifest;
 
 /// The name of the file.
@@ -41,140 +39,6 @@ const NAME: &str = "manifest.json";
 const VERSION: u32 = 2;
 /// Bytes that are read at once for a checksum.
 const PIECE: usize = 1 << 20;
-
-/// Why a film cannot be resumed, or its manifest not be written.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum ManifestError {
-    /// A file of this name is something else, or damaged.
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
-    /// It cannot be read.
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The system's message.
-        reason: io::Error,
-    },
-    /// Another version of the program may render other pixels.
-    Program {
-        /// The file.
-        path: PathBuf,
-        /// The film.
-        film: String,
-        /// The recorded version.
-        was: String,
-        /// This version.
-        is: &'static str,
-    },
-    /// A setting is not that of the frames that are there.
-    Settings {
-        /// The file.
-        path: PathBuf,
-        /// The film.
-        film: String,
-        /// The setting.
-        setting: Name,
-        /// The recorded value.
-        was: String,
-        /// The value now.
-        is: String,
-    },
-    /// The scene is not that of the frames that are there.
-    Scene {
-        /// The file.
-        path: PathBuf,
-        /// The film.
-        film: String,
-        /// The scene.
-        scene: PathBuf,
-    },
-    /// There would be no manifest.
-    StandardInput,
-    /// A file that belongs to the film cannot be read.
-    Checksum {
-        /// The file.
-        path: PathBuf,
-        /// The system's message.
-        reason: io::Error,
-    },
-    /// It cannot be written.
-    Write(WriteError),
-    /// It cannot replace the former one.
-    Publish(PublishError),
-}
-
-impl Told for ManifestError {
-    fn told(&self, words: Words) -> String {
-        let anew = || format!("write {} in place of {} to begin anew", words.on("overwrite"), words.on("resume"));
-        match self {
-            ManifestError::Foreign { path, reason } => format!(
-                "{} is not a manifest of films ({reason}); choose another folder for {}, or remove it and {}",
-                path.display(),
-                words.of("output"),
-                anew()
-            ),
-            ManifestError::Read { path, reason } => {
-                format!("cannot read {}: {reason}; check its permissions", path.display())
-            }
-            ManifestError::Program { path, film, was, is } => format!(
-                "{}: the film {film} was begun by version {was} of lightmesh, and this is {is}; use that version, or {}",
-                path.display(),
-                anew()
-            ),
-            ManifestError::Settings { path, film, setting, was, is } => format!(
-                "{}: the settings of the film {film} differ: {} was {was} and is {is}; give the former, or {}",
-                path.display(),
-                words.of(setting),
-                anew()
-            ),
-            ManifestError::Scene { path, film, scene } => format!(
-                "{}: the scene of the film {film} differs: {}, or a file that it refers to, has changed; restore it, or {}",
-                path.display(),
-                scene.display(),
-                anew()
-            ),
-            ManifestError::StandardInput => format!(
-                "{} needs a scene that can be read again, but it comes from standard input; save it to a file and name that",
-                words.of("resume")
-            ),
-            ManifestError::Checksum { path, reason } => {
-                format!("cannot read {} for its checksum: {reason}; check its permissions", path.display())
-            }
-            ManifestError::Write(error) => error.to_string(),
-            ManifestError::Publish(error) => error.to_string(),
-        }
-    }
-}
-
-display_by_fields!(ManifestError);
-
-impl Source for ManifestError {
-    fn source(&self) -> Option<&(dyn Source + 'static)> {
-        match self {
-            ManifestError::Read { reason, .. } | ManifestError::Checksum { reason, .. } => Some(reason),
-            ManifestError::Write(error) => error.source(),
-            ManifestError::Publish(error) => error.source(),
-            _ => None,
-        }
-    }
-}
-
-impl From<WriteError> for ManifestError {
-    fn from(error: WriteError) -> ManifestError {
-        ManifestError::Write(error)
-    }
-}
-
-impl From<PublishError> for ManifestError {
-    fn from(error: PublishError) -> ManifestError {
-        ManifestError::Publish(error)
-    }
-}
 
 /// The content of the file.
 #[derive(Debug, Serialize, Deserialize)]

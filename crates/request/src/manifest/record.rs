@@ -10,14 +10,12 @@ use lightmesh_files::{directory, identity};
 use lightmesh_scene::Scene;
 use xxhash_rust::xxh3::Xxh3;
 
-use super::{
-    Chosen, FileRecord, Folder, ManifestError, Record, VERSION, digest, hex, place, read, scene, settings, write,
-};
-use crate::error::RequestError;
+use super::{Chosen, FileRecord, Folder, Record, VERSION, digest, hex, place, read, scene, settings, write};
+use crate::error::{ManifestError, RequestError};
 use crate::files::{Destination, PictureFiles};
 use crate::film::{Film, FrameRange};
 use crate::host::Host;
-use crate::plan::Order;
+use crate::order::Order;
 use crate::told::Told;
 
 /// Writing the manifest takes at most one part in this many of the time.

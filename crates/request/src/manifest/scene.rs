@@ -5,8 +5,9 @@ use std::path::Path;
 use lightmesh_scene::Scene;
 use xxhash_rust::xxh3::Xxh3;
 
-use super::{ManifestError, digest, hex};
-use crate::plan::Order;
+use super::{digest, hex};
+use crate::error::ManifestError;
+use crate::order::Order;
 
 /// The scene's own file, or the name of a built-in one with its options; the files that the scene refers to, also that some are missing; and
 /// the panorama. A folder that is moved as a whole stays the same. A grid file does not count: it changes no pixel.

@@ -8,9 +8,9 @@ use lightmesh_render::PreparedScene;
 pub use hours::SunHours;
 pub use study::{HoursFile, HoursFormat, SunMoment, SunStudy};
 
+use crate::context::Context;
 use crate::error::Error;
 use crate::plan::Plan;
-use crate::session::Context;
 use crate::value::clock;
 
 /// Writes the hours of direct sun, if they are asked for; returns what was done.

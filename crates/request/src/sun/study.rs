@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 use lightmesh_files::check_writable;
 use lightmesh_scene::{SkyKind, SunPosition};
 
-use crate::error::RequestError;
-use crate::files::{OutputError, Outputs, PictureFiles, hours_of_sun, input, save_options};
-use crate::plan::Order;
+use crate::error::{OutputError, RequestError};
+use crate::files::{Outputs, PictureFiles, hours_of_sun, input, save_options};
+use crate::order::Order;
 use crate::value::{SkySpec, SunSpec, clock};
 use crate::words::Words;
 

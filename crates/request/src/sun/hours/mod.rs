@@ -9,6 +9,7 @@
 //! for all of them, and neither sky nor reflected light is computed. Light that passes surfaces, such as panes, is counted as far as V says.
 
 mod colors;
+mod found;
 mod legend;
 mod letters;
 mod picture;
@@ -21,15 +22,17 @@ use std::time::Instant;
 use glam::Vec3;
 use lightmesh_image::{Description, ExrOptions, Format, Frame, Layers, Output, Ready, SaveOptions};
 use lightmesh_render::{AmbientSource, Observer, PreparedScene, RenderError, Renderer, Settings};
-use lightmesh_scene::{Camera, Light, LightError, Lights, Up};
+use lightmesh_scene::{Light, LightError, Lights, Up};
 use rayon::prelude::*;
+
+pub use found::SunHours;
 
 use super::study::hours_file;
 use super::{HoursFile, HoursFormat, SunMoment, SunStudy};
-use crate::error::Error;
-use crate::files::{OutputError, publish, ready};
+use crate::context::Context;
+use crate::error::{Error, OutputError};
+use crate::files::{publish, ready};
 use crate::host::RENDERING;
-use crate::session::Context;
 
 /// Bytes that layers of suns may take at a time.
 const BYTES_AT_ONCE: usize = 256 << 20;
@@ -37,17 +40,6 @@ const BYTES_AT_ONCE: usize = 256 << 20;
 const BYTES: usize = 16;
 /// More suns at a time hardly save anything.
 const MOST_AT_ONCE: usize = 64;
-
-/// The hours of direct sun of the pixels of an image.
-pub struct SunHours {
-    study: SunStudy,
-    exr: ExrOptions,
-    /// What the pixels see.
-    frame: Frame,
-    camera: Camera,
-    /// Hours by pixel; 0 where there is no surface.
-    hours: Vec<f32>,
-}
 
 /// Computes the hours of direct sun and writes their files; returns what was done.
 pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context) -> Result<String, Error> {
@@ -79,16 +71,6 @@ impl SunHours {
             host.cancellable(|| SunHours::of(renderer, prepared, (&plan.settings, study), &suns, host))
         })?;
         Ok(SunHours { exr: plan.files.options.exr, ..found })
-    }
-
-    /// Hours of the pixels, row by row from the top; 0 where there is no surface.
-    pub fn hours(&self) -> &[f32] {
-        &self.hours
-    }
-
-    /// Width and height in pixels.
-    pub fn size(&self) -> [u32; 2] {
-        [self.frame.width(), self.frame.height()]
     }
 
     /// The hours for which each of some `suns` shines on what each pixel of an image sees.
@@ -126,15 +108,6 @@ impl SunHours {
         let frame = seen.expect("a study has a moment with sun");
         let (study, exr) = (study.clone(), ExrOptions::default());
         Ok(SunHours { study, exr, frame, camera, hours: hours.into_iter().map(|hours| hours as f32).collect() })
-    }
-
-    fn layers(&self) -> &Layers {
-        self.frame.layers().expect("they were kept")
-    }
-
-    /// Whether a pixel sees a surface.
-    fn sees(&self, pixel: usize) -> bool {
-        self.layers().depth[pixel].is_finite()
     }
 
     /// The hours as a picture with a legend.

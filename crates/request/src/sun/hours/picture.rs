@@ -6,8 +6,8 @@
 use glam::Vec3;
 use lightmesh_image::{Frame, Transfer};
 
-use super::SunHours;
 use super::colors::viridis;
+use super::found::SunHours;
 use super::legend::Canvas;
 use super::pixel_area::PixelGrid;
 use crate::sun::SunStudy;

@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use glam::Vec3;
 
-use super::SunHours;
+use super::found::SunHours;
 use super::pixel_area::PixelGrid;
 
 /// The columns. Areas are in squares of the scene's unit, hours are weighted by them.

@@ -1,7 +1,7 @@
 //! Hours of direct sun where they are known.
 
 use lightmesh_render::{Device, Unobserved};
-use lightmesh_scene::Scene;
+use lightmesh_scene::{Camera, Scene};
 
 use super::*;
 use crate::value::SkySpec;

@@ -1,0 +1,38 @@
+//! The hours of direct sun that were found, and what the pixels see.
+
+use lightmesh_image::{ExrOptions, Frame, Layers};
+use lightmesh_scene::Camera;
+
+use crate::sun::SunStudy;
+
+/// The hours of direct sun of the pixels of an image.
+pub struct SunHours {
+    pub(super) study: SunStudy,
+    pub(super) exr: ExrOptions,
+    /// What the pixels see.
+    pub(super) frame: Frame,
+    pub(super) camera: Camera,
+    /// Hours by pixel; 0 where there is no surface.
+    pub(super) hours: Vec<f32>,
+}
+
+impl SunHours {
+    /// Hours of the pixels, row by row from the top; 0 where there is no surface.
+    pub fn hours(&self) -> &[f32] {
+        &self.hours
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.frame.width(), self.frame.height()]
+    }
+
+    pub(super) fn layers(&self) -> &Layers {
+        self.frame.layers().expect("they were kept")
+    }
+
+    /// Whether a pixel sees a surface.
+    pub(super) fn sees(&self, pixel: usize) -> bool {
+        self.layers().depth[pixel].is_finite()
+    }
+}
