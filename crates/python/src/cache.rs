@@ -8,7 +8,7 @@ use lightmesh_memory::Budget;
 use pyo3::prelude::*;
 
 use crate::errors::OrRaise;
-use crate::renderer::PreparedScene;
+use crate::prepared::PreparedScene;
 
 /// What light points see and surfaces gather, kept from image to image. Images are the same without it.
 #[pyclass(frozen, module = "lightmesh")]

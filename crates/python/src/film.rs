@@ -1,19 +1,20 @@
 //! Films and sun studies.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use lightmesh::request::files::Files;
 use lightmesh::request::sun::SunHours as Hours;
 use lightmesh::request::{Error, Frames, Order, Plan, Request, RequestError, Session};
-use lightmesh::{RenderError, Scene as World};
+use lightmesh::{RenderError, Renderer, Scene as World};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::{self, OrRaise};
-use crate::frame::{Frame, plane};
-use crate::renderer::{Renderer, take_objects};
+use crate::frame::Frame;
+use crate::objects::take_objects;
+use crate::planes::plane;
 use crate::scene::Scene;
 use crate::settings::{self, FILM};
 use crate::watch::{self, Cancel, Watch, Wishes};
@@ -67,7 +68,7 @@ impl Production {
     }
 
     /// Opens, stages and prepares the scene.
-    fn session(self, renderer: &Renderer, watch: &Watch) -> Result<Session, Error> {
+    fn session(self, engine: &Renderer, watch: &Watch) -> Result<Session, Error> {
         let Production { source, objects, order } = self;
         let format = order.format();
         let plan = Plan::new(order)?;
@@ -77,14 +78,14 @@ impl Production {
         };
         plan.files.outputs.keep_scene(&scene.world)?;
         objects(&mut scene);
-        Session::begin(&renderer.engine, plan, scene.world, 0.0, watch)
+        Session::begin(engine, plan, scene.world, 0.0, watch)
     }
 }
 
 /// The frames of a film: iterate over it. With an output, each frame is written before it is returned.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Film {
-    renderer: Py<Renderer>,
+    engine: Arc<Renderer>,
     frames: Mutex<Frames>,
     progress: Option<Py<PyAny>>,
     cancel: Option<Cancel>,
@@ -92,12 +93,11 @@ pub(crate) struct Film {
 
 impl Film {
     pub(crate) fn begin(
-        renderer: &Bound<'_, Renderer>,
+        py: Python<'_>,
+        engine: &Arc<Renderer>,
         production: Production,
         Wishes { progress, cancel }: Wishes,
     ) -> PyResult<Film> {
-        let py = renderer.py();
-        let engine = renderer.get();
         let wishes =
             Wishes { progress: progress.as_ref().map(|callback| callback.clone_ref(py)), cancel: cancel.clone() };
         let begin = |watch: &Watch| {
@@ -106,10 +106,10 @@ impl Film {
             }
             let session = production.session(engine, watch)?;
             let range = session.plan().range(session.scene())?.ok_or(RequestError::NoFilm)?;
-            session.frames(range, &engine.engine, watch)
+            session.frames(range, engine, watch)
         };
         let frames = watch::run(py, wishes, begin)?.or_raise()?;
-        Ok(Film { renderer: renderer.clone().unbind(), frames: Mutex::new(frames), progress, cancel })
+        Ok(Film { engine: Arc::clone(engine), frames: Mutex::new(frames), progress, cancel })
     }
 }
 
@@ -122,10 +122,9 @@ impl Film {
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Frame>> {
         let progress = self.progress.as_ref().map(|callback| callback.clone_ref(py));
         let wishes = Wishes { progress, cancel: self.cancel.clone() };
-        let renderer = self.renderer.get();
         let next = |watch: &Watch| {
             let mut frames = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
-            let rendered = frames.next(&renderer.engine, watch).transpose()?;
+            let rendered = frames.next(&self.engine, watch).transpose()?;
             let request = &frames.plan().order.request;
             Ok::<_, Error>(rendered.map(|rendered| Frame::of_film(rendered, request, watch.notes())))
         };
@@ -149,13 +148,17 @@ pub(crate) struct SunHours {
 }
 
 impl SunHours {
-    pub(crate) fn find(renderer: &Bound<'_, Renderer>, production: Production, wishes: Wishes) -> PyResult<SunHours> {
-        let engine = renderer.get();
+    pub(crate) fn find(
+        py: Python<'_>,
+        engine: &Arc<Renderer>,
+        production: Production,
+        wishes: Wishes,
+    ) -> PyResult<SunHours> {
         let find = |watch: &Watch| {
-            let found = production.session(engine, watch)?.sun_hours(&engine.engine, watch)?;
+            let found = production.session(engine, watch)?.sun_hours(engine, watch)?;
             found.ok_or(Error::Request(RequestError::Missing { setting: "sun" }))
         };
-        Ok(SunHours { found: watch::run(renderer.py(), wishes, find)?.or_raise()? })
+        Ok(SunHours { found: watch::run(py, wishes, find)?.or_raise()? })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Rendered images.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::Vec3;
 use lightmesh::image::{Description, Format, Layers, publish};
@@ -9,21 +10,20 @@ use lightmesh::request::{Request, StoragePlan, describe};
 use lightmesh::scene;
 use lightmesh::{Frame as Rendered, Scene};
 use lightmesh_files::visible;
-use numpy::ndarray::{ArrayView2, ArrayView3};
-use numpy::{Element, PyArray2, PyArray3, PyArrayMethods};
-use pyo3::exceptions::PyAttributeError;
+use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors::OrRaise;
 use crate::mattes::{Mattes, Which};
+use crate::planes::{no_layers, plane, planes};
 use crate::settings::{self, SAVE};
 
 /// A rendered image. Its arrays are views into it that cannot be written; row 0 is the top. Those from `depth` on exist if it was
 /// rendered with `layers=True`.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Frame {
-    rendered: Rendered,
+    rendered: Arc<Rendered>,
     /// Exposure of image files, in stops.
     stops: f32,
     notes: Vec<String>,
@@ -34,34 +34,6 @@ pub(crate) struct Frame {
     number: Option<u32>,
     /// The time of day in a sun study.
     when: String,
-}
-
-/// A read-only view of a plane, one value per pixel; `owner` has it.
-pub(crate) fn plane<'py, T: Element>(
-    owner: &Bound<'py, PyAny>,
-    size: [u32; 2],
-    values: &[T],
-) -> PyResult<Bound<'py, PyArray2<T>>> {
-    let [width, height] = size.map(|side| side as usize);
-    let view = ArrayView2::from_shape((height, width), values).map_err(|_| no_layers())?;
-    // SAFETY: the owner is an object that never changes and has the values, and the array keeps it alive.
-    let array = unsafe { PyArray2::borrow_from_array(&view, owner.clone()) };
-    array.try_readwrite()?.make_nonwriteable();
-    Ok(array)
-}
-
-/// The same with three values per pixel.
-fn planes<'py>(owner: &Bound<'py, PyAny>, size: [u32; 2], values: &[[f32; 3]]) -> PyResult<Bound<'py, PyArray3<f32>>> {
-    let [width, height] = size.map(|side| side as usize);
-    let view = ArrayView3::from_shape((height, width, 3), values.as_flattened()).map_err(|_| no_layers())?;
-    // SAFETY: as above.
-    let array = unsafe { PyArray3::borrow_from_array(&view, owner.clone()) };
-    array.try_readwrite()?.make_nonwriteable();
-    Ok(array)
-}
-
-fn no_layers() -> PyErr {
-    PyAttributeError::new_err("the frame has no layers: render it with layers=True")
 }
 
 /// A value as Python's dictionaries, lists and numbers.
@@ -75,7 +47,7 @@ impl Frame {
     pub(crate) fn new(rendered: Rendered, stops: f32, notes: Vec<String>, world: &Scene) -> Frame {
         let camera: Option<&scene::Camera> = world.cameras.first();
         let description = describe(&rendered, world.to_world(Vec3::ZERO), camera);
-        let storage = Request::default();
+        let (storage, rendered) = (Request::default(), Arc::new(rendered));
         Frame { rendered, stops, notes, description, storage, number: None, when: String::new() }
     }
 
@@ -178,14 +150,14 @@ impl Frame {
     #[getter]
     fn ids(slf: &Bound<'_, Self>) -> PyResult<Mattes> {
         slf.get().layers()?;
-        Ok(Mattes::new(slf, Which::Objects))
+        Ok(Mattes::new(Arc::clone(&slf.get().rendered), Which::Objects))
     }
 
     /// The materials that pixels see.
     #[getter]
     fn material_ids(slf: &Bound<'_, Self>) -> PyResult<Mattes> {
         slf.get().layers()?;
-        Ok(Mattes::new(slf, Which::Materials))
+        Ok(Mattes::new(Arc::clone(&slf.get().rendered), Which::Materials))
     }
 
     /// Counts, seconds, memory and settings: what `--stats` writes.

@@ -15,6 +15,9 @@ mod geometry;
 mod light;
 mod material;
 mod mattes;
+mod objects;
+mod planes;
+mod prepared;
 mod renderer;
 mod scene;
 mod settings;
@@ -49,7 +52,9 @@ mod _lightmesh {
     #[pymodule_export]
     use crate::mattes::Mattes;
     #[pymodule_export]
-    use crate::renderer::{PreparedScene, Renderer, visibility};
+    use crate::prepared::PreparedScene;
+    #[pymodule_export]
+    use crate::renderer::{Renderer, visibility};
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]

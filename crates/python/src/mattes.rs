@@ -1,11 +1,14 @@
 //! Which things pixels see.
 
+use std::sync::Arc;
+
+use lightmesh::Frame as Rendered;
 use lightmesh::image::Matte;
 use numpy::ndarray::Array3;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-use crate::frame::{self, Frame};
+use crate::planes::{no_layers, plane};
 
 /// Which things.
 #[derive(Clone, Copy)]
@@ -17,7 +20,7 @@ pub(crate) enum Which {
 /// Which things, objects or materials, pixels see. Things are numbered from 1; 0 is nothing.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Mattes {
-    frame: Py<Frame>,
+    rendered: Arc<Rendered>,
     which: Which,
 }
 
@@ -25,12 +28,12 @@ pub(crate) struct Mattes {
 type RankArrays<'py> = (Bound<'py, PyArray2<u32>>, Bound<'py, PyArray2<f32>>);
 
 impl Mattes {
-    pub(crate) fn new(frame: &Bound<'_, Frame>, which: Which) -> Mattes {
-        Mattes { frame: frame.clone().unbind(), which }
+    pub(crate) fn new(rendered: Arc<Rendered>, which: Which) -> Mattes {
+        Mattes { rendered, which }
     }
 
     fn matte(&self) -> PyResult<&Matte> {
-        let layers = self.frame.get().layers()?;
+        let layers = self.rendered.layers().ok_or_else(no_layers)?;
         Ok(match self.which {
             Which::Objects => &layers.object,
             Which::Materials => &layers.material,
@@ -48,25 +51,27 @@ impl Mattes {
 
     /// (H, W): what the nearest sample of each pixel sees.
     #[getter]
-    fn nearest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        frame::plane(self.frame.bind(py).as_any(), self.frame.get().pixels(), &self.matte()?.nearest)
+    fn nearest<'py>(slf: &Bound<'py, Mattes>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        let mattes = slf.get();
+        plane(slf.as_any(), mattes.rendered.size(), &mattes.matte()?.nearest)
     }
 
     /// From the largest share of a pixel to the smallest: thing and share, (H, W) each.
     #[getter]
-    fn ranks<'py>(&self, py: Python<'py>) -> PyResult<Vec<RankArrays<'py>>> {
-        let (owner, size) = (self.frame.bind(py).as_any(), self.frame.get().pixels());
-        let arrays = self
+    fn ranks<'py>(slf: &Bound<'py, Mattes>) -> PyResult<Vec<RankArrays<'py>>> {
+        let (owner, mattes) = (slf.as_any(), slf.get());
+        let size = mattes.rendered.size();
+        let arrays = mattes
             .matte()?
             .ranks
             .iter()
-            .map(|rank| Ok((frame::plane(owner, size, &rank.number)?, frame::plane(owner, size, &rank.share)?)));
+            .map(|rank| Ok((plane(owner, size, &rank.number)?, plane(owner, size, &rank.share)?)));
         arrays.collect()
     }
 
     /// (H, W, 4) each, as Cryptomatte 1.2 lays them out: hash and share of two things.
     fn cryptomatte<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray3<f32>>>> {
-        let [width, height] = self.frame.get().pixels().map(|side| side as usize);
+        let [width, height] = self.rendered.size().map(|side| side as usize);
         let matte = self.matte()?;
         let pictures = py.detach(|| matte.cryptomatte());
         let array = |picture: Vec<[f32; 4]>| {

@@ -1,239 +1,35 @@
 //! Rendering.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use glam::Vec3;
-use lightmesh::render::{Choice, MeshFileError, PreparedScene as Prepared};
+use lightmesh::render::{Choice, MeshFileError};
 use lightmesh::request::files::Files;
-use lightmesh::request::{ImagePlan, Request, StageError, StagedImage};
-use lightmesh::scene::{Geometry, Up};
 use lightmesh::{Device, Observer, RenderError, Renderer as Engine};
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::cache::MeshCache;
-use crate::camera::Camera;
 use crate::convert;
-use crate::environment::Environment;
 use crate::errors::{self, IntoException, OrRaise};
 use crate::film::{Film, Production, Source, SunHours};
 use crate::frame::Frame;
 use crate::light::Light;
+use crate::prepared::{Failure, Kept, Order, PreparedScene, Subject};
 use crate::scene::Scene;
-use crate::settings::{self, IMAGE};
 use crate::watch::{self, Cancel, Watch, Wishes};
 
 /// Renders scenes on one device: "auto", "cpu", "cuda" or "cuda:1". Can be used by several threads at once; the interpreter is free while it
 /// works. Raises `DeviceError` if the device cannot be used.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Renderer {
-    pub(crate) engine: Engine,
+    engine: Arc<Engine>,
     device: String,
     reason: String,
     /// What was rendered last, so that its structure stays alive.
     last: Mutex<Option<Kept>>,
-}
-
-/// A scene with its acceleration structure, ready to be rendered any number of times.
-#[pyclass(frozen, module = "lightmesh")]
-#[derive(Clone)]
-pub(crate) struct PreparedScene {
-    /// As it was given, with the camera and the surroundings of the settings.
-    scene: Scene,
-    /// The settings that it was prepared with, which hold for its images, too.
-    request: Request,
-    kept: Kept,
-}
-
-/// A structure that is alive.
-#[derive(Clone)]
-struct Kept {
-    /// The geometry that the scene was given with.
-    given: Arc<Geometry>,
-    /// What is up, if a ground was added.
-    ground: Option<Up>,
-    prepared: Prepared,
-}
-
-/// What goes wrong on the way to a frame.
-enum Failure {
-    Stage(StageError),
-    Render(RenderError),
-}
-
-impl From<StageError> for Failure {
-    fn from(error: StageError) -> Failure {
-        Failure::Stage(error)
-    }
-}
-
-impl From<RenderError> for Failure {
-    fn from(error: RenderError) -> Failure {
-        Failure::Render(error)
-    }
-}
-
-impl IntoException for Failure {
-    fn into_exception(self) -> PyErr {
-        match self {
-            Failure::Stage(error) => error.into_exception(),
-            Failure::Render(error) => error.into_exception(),
-        }
-    }
-}
-
-/// What is to be rendered.
-pub(crate) enum Subject<'py> {
-    Prepared(Bound<'py, PreparedScene>),
-    Scene(Bound<'py, Scene>),
-}
-
-impl<'py> FromPyObject<'_, 'py> for Subject<'py> {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Subject<'py>> {
-        if let Ok(prepared) = object.cast::<PreparedScene>() {
-            return Ok(Subject::Prepared(prepared.to_owned()));
-        }
-        match object.cast::<Scene>() {
-            Ok(scene) => Ok(Subject::Scene(scene.to_owned())),
-            Err(_) => Err(errors::wrong_type("a Scene or a PreparedScene", &object)),
-        }
-    }
-}
-
-/// A scene with the settings of an image of it.
-struct Order {
-    scene: Scene,
-    request: Request,
-    plan: ImagePlan,
-    /// Its structure, if there is one.
-    kept: Option<Kept>,
-}
-
-impl Order {
-    /// Takes objects out of the settings, and makes flags of the rest.
-    fn new(subject: &Subject<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Order> {
-        let (mut scene, mut request, kept) = match subject {
-            Subject::Scene(scene) => (scene.try_borrow()?.clone(), Request::default(), None),
-            Subject::Prepared(prepared) => {
-                let PreparedScene { scene, request, kept } = prepared.get();
-                (scene.clone(), request.clone(), Some(kept.clone()))
-            }
-        };
-        let settings = settings.map(|settings| settings.copy()).transpose()?;
-        take_objects(&mut request, settings.as_ref())?(&mut scene);
-        settings::apply(&mut request, settings.as_ref(), IMAGE)?;
-        let plan = ImagePlan::new(&request, scene.format).or_raise()?;
-        Ok(Order { scene, request, plan, kept })
-    }
-
-    /// The scene with everything that the settings say, how it is exposed, and its structure.
-    fn prepare(
-        &self,
-        engine: &Engine,
-        last: &Mutex<Option<Kept>>,
-        before: Option<&Prepared>,
-        watch: &Watch,
-    ) -> Result<(Kept, StagedImage), Failure> {
-        let given = &self.scene.world.geometry;
-        let mut world = self.scene.world.clone();
-        let staged = self.plan.stage(&mut world, watch)?;
-        let ground = staged.ground();
-        let last = || last.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_same = |kept: &Kept| Arc::ptr_eq(&kept.given, given) && kept.ground == ground;
-        let known = self.kept.clone().filter(is_same).or_else(|| last().clone().filter(is_same));
-        if let Some(known) = &known {
-            // The ground that was added now is the same.
-            world.geometry = Arc::clone(&known.prepared.scene.geometry);
-        }
-        let settings = self.plan.settings();
-        let prepared = match before {
-            Some(before) => engine.prepare_moved(before, &world, settings, watch)?,
-            None => engine.prepare(&world, settings, watch)?,
-        };
-        let kept = Kept { given: Arc::clone(given), ground, prepared };
-        *last() = Some(kept.clone());
-        Ok((kept, staged))
-    }
-}
-
-/// Takes camera and surroundings that are objects out of settings. What is returned gives them to a scene.
-pub(crate) fn take_objects(
-    request: &mut Request,
-    settings: Option<&Bound<'_, PyDict>>,
-) -> PyResult<impl Fn(&mut Scene) + Send + Sync + use<>> {
-    let (mut camera, mut environment) = (None, None);
-    if let Some(settings) = settings {
-        camera = taken::<Camera>(settings, "camera")?;
-        environment = taken::<Environment>(settings, "environment")?;
-        if camera.is_some() {
-            settings.set_item("camera_name", settings.py().None())?;
-            (request.camera, request.camera_name) = (None, None);
-        }
-        if environment.is_some() {
-            request.environment = None;
-        }
-    }
-    Ok(move |scene: &mut Scene| {
-        if let Some(camera) = &camera {
-            scene.set_camera(Some(camera.clone()));
-        }
-        if let Some(environment) = &environment {
-            scene.set_environment(Some(environment.clone()));
-        }
-    })
-}
-
-/// An object of this class among settings, which it is taken out of.
-fn taken<T: for<'a, 'py> FromPyObject<'a, 'py>>(settings: &Bound<'_, PyDict>, name: &str) -> PyResult<Option<T>> {
-    let Some(value) = settings.get_item(name)? else { return Ok(None) };
-    let Ok(object) = value.extract::<T>() else { return Ok(None) };
-    settings.del_item(name)?;
-    Ok(Some(object))
-}
-
-#[pymethods]
-impl PreparedScene {
-    /// The scene, with the camera and surroundings of the settings.
-    #[getter]
-    fn scene(&self) -> Scene {
-        self.scene.clone()
-    }
-
-    /// Bytes that the structure takes.
-    #[getter]
-    fn memory(&self) -> usize {
-        self.kept.prepared.geometry.memory()
-    }
-
-    /// The same with other lights; nothing is rebuilt.
-    fn with_lights(&self, lights: Vec<Light>) -> PreparedScene {
-        let mut changed = self.clone();
-        changed.scene.set_lights(lights);
-        changed
-    }
-
-    /// The same with another camera; nothing is rebuilt.
-    fn with_camera(&self, camera: Camera) -> PreparedScene {
-        let mut changed = self.clone();
-        changed.scene.set_camera(Some(camera));
-        (changed.request.camera, changed.request.camera_name) = (None, None);
-        changed
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<lightmesh.PreparedScene of {:?}>", self.scene.world.name)
-    }
-}
-
-impl PreparedScene {
-    /// The structure with its scene.
-    pub(crate) fn prepared(&self) -> &Prepared {
-        &self.kept.prepared
-    }
 }
 
 #[pymethods]
@@ -245,7 +41,7 @@ impl Renderer {
         let made = || {
             let choice = Choice::of(device)?;
             let (chosen, reason) = (choice.device.to_string(), choice.reason.clone());
-            Ok((Engine::on(choice, threads)?, chosen, reason))
+            Ok((Arc::new(Engine::on(choice, threads)?), chosen, reason))
         };
         let (engine, device, reason) = py.detach(made).map_err(|error: RenderError| error.into_exception())?;
         Ok(Renderer { engine, device, reason, last: Mutex::default() })
@@ -284,7 +80,7 @@ impl Renderer {
             false => order.prepare(&self.engine, &self.last, before, watch),
         };
         let (kept, _) = watch::run(py, Wishes { progress, cancel }, prepare)?.or_raise()?;
-        Ok(PreparedScene { scene: order.scene, request: order.request, kept })
+        Ok(order.prepared(kept))
     }
 
     /// Renders an image. The structure of the scene rendered last is kept: other lights and cameras cost no building.
@@ -337,7 +133,8 @@ impl Renderer {
     #[pyo3(signature = (scene, output = None, *, layers_file = None, stats = None, mesh_file = None, progress = None, cancel = None, **settings))]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn film(
-        slf: &Bound<'_, Renderer>,
+        &self,
+        py: Python<'_>,
         scene: Source,
         output: Option<PathBuf>,
         layers_file: Option<PathBuf>,
@@ -348,7 +145,7 @@ impl Renderer {
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Film> {
         let files = Files { output, layers: layers_file, stats, mesh_file, sun_hours: Vec::new() };
-        Film::begin(slf, Production::new(scene, files, settings)?, Wishes { progress, cancel })
+        Film::begin(py, &self.engine, Production::new(scene, files, settings)?, Wishes { progress, cancel })
     }
 
     /// The hours of direct sun on what an image shows, on a day at a place that `sun` says.
@@ -357,13 +154,19 @@ impl Renderer {
     #[doc = include_str!("docs/film.txt")]
     #[pyo3(signature = (scene, *, progress = None, cancel = None, **settings))]
     fn sun_hours(
-        slf: &Bound<'_, Renderer>,
+        &self,
+        py: Python<'_>,
         scene: Source,
         progress: Option<Py<PyAny>>,
         cancel: Option<Cancel>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<SunHours> {
-        SunHours::find(slf, Production::new(scene, Files::default(), settings)?, Wishes { progress, cancel })
+        SunHours::find(
+            py,
+            &self.engine,
+            Production::new(scene, Files::default(), settings)?,
+            Wishes { progress, cancel },
+        )
     }
 
     /// The visible share of each light, (N, L), at surface points (N, 3) with these normals (N, 3), world coordinates: to bake vertex colours and
