@@ -7,8 +7,12 @@
 
 Every scene — the built-in ones, those of `scenes/` and, where the folder exists, the models of `../shared/scenes` — is rendered by all
 techniques, with layers, mirrors and several samples of each pixel; with a sky, with a ground, as a film of three frames, and as a sun study
-with hours. A file counts by its SHA-256, a message on standard error by its text; times and folders are left out. Exit code 1 if
-anything differs. `--device cuda` does the same on a GPU; the rows of devices are not compared with each other.
+with hours; and the same four with no other settings, as PNG and EXR with statistics. A file counts by its SHA-256, statistics without seconds
+and memory, a message on standard error by its text; times and folders are left out. Exit code 1 if anything differs. `--device cuda` does the
+same on a GPU; the rows of devices are not compared with each other.
+
+Pictures of other faces come from the library: `--face python` with a Python that has the wheel installed in place of the program,
+`--face rust` with the program `pictures` of `lightmesh-examples`. The rows of a face are not compared with those of another one.
 """
 
 import argparse
@@ -29,11 +33,13 @@ MODELS = (".obj", ".gltf", ".glb", ".ply", ".stl")
 # Times, rates and free memory in messages.
 VARIES = re.compile(r"(, about )?\d+(\.\d+)? ?(ms|s|min|h|GiB free)\b( left)?|\d+\.\d+ per second")
 
-# What all pictures have: small, with samples on edges, and reflections.
-COMMON = "--size 96x72 --aa 2 --samples 4 --bounces 1 --progress none --color never"
+# What all pictures have.
+QUIET = "--progress none --color never"
+# Pictures by all techniques: small, with samples on edges, and reflections.
+COMMON = f"{QUIET} --size 96x72 --aa 2 --samples 4 --bounces 1"
 
 # Each with the files that it writes; `OUT` is a folder of its own.
-CASES = {
+TECHNIQUES = {
     "lists": "-o OUT/p.png --layers OUT/l.exr",
     "adaptive": "--lookup adaptive -o OUT/p.png --layers OUT/l.exr",
     "half-ball": "--lookup half-ball -o OUT/p.png --layers OUT/l.exr",
@@ -47,11 +53,30 @@ CASES = {
     "sun": "--sun 54.98,82.9,2026-06-21+07:00,09:00-15:00/3h --ambient-light constant --aa 1 "
     "--sun-hours OUT/h.png --sun-hours OUT/h.exr --sun-hours OUT/h.csv -o OUT/d.##.png",
 }
+# Without other settings, so that all defaults count. Statistics are those of an image or of each frame; `#` is the number of the frame.
+DEFAULTS = {
+    "default": "",
+    "default-ground": "--ground",
+    "default-sky": "--sky clear --quality draft",
+    "default-film": "--turntable 3",
+    "default-sun": "--sun 54.98,82.9,2026-06-21+07:00,09:00-15:00/3h --quality draft --sun-hours OUT/h.csv",
+}
+FORMATS = {"png": "-o OUT/p.#.png --stats OUT/p.#.json", "exr": "-o OUT/e.#.exr --layers OUT/l.#.exr --stats OUT/e.#.json"}
+CLI = {case: f"{COMMON} {flags}" for case, flags in TECHNIQUES.items()} | {
+    f"{case}-{name}": f"{QUIET} --size 48x36 {flags} {files}" for case, flags in DEFAULTS.items() for name, files in FORMATS.items()
+}
+# The library has neither films nor sun studies; its turntable is turned by hand.
+LIBRARY = ("default", "ground", "sky", "turntable")
+FACES = {"cli": tuple(CLI), "python": LIBRARY, "rust": LIBRARY}
+PYTHON = Path(__file__).with_name("python_face.py")
+# Parts of statistics that differ from run to run.
+UNSTEADY = ("seconds", "memory")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
+    parser.add_argument("--face", choices=FACES, default="cli", help="what is asked for pictures, and so what the program is [default: cli]")
     parser.add_argument("-o", "--output", type=Path, help="the digests, as JSON")
     parser.add_argument("--against", type=Path, help="digests of an earlier run, to compare with")
     parser.add_argument("--device", default="cpu")
@@ -63,7 +88,7 @@ def main():
         parser.error("give -o to record, or --against to compare")
     folders = plan.scenes or [ROOT / "scenes", ROOT.parent / "shared" / "scenes"]
     scenes = ["builtin:gazebo", "builtin:childpark", "builtin:garden"] + [scene for folder in folders for scene in models(folder)]
-    runs = [(f"{case} {scene_name(scene)}", scene, case) for scene in scenes for case in CASES]
+    runs = [(f"{plan.face} {case} {scene_name(scene)}", scene, case) for scene in scenes for case in FACES[plan.face]]
     runs = [run for run in runs if plan.only in run[0]]
     with concurrent.futures.ThreadPoolExecutor(plan.jobs) as pool:
         rows = dict(zip((run[0] for run in runs), pool.map(lambda run: digests(plan, *run[1:]), runs), strict=True))
@@ -89,14 +114,30 @@ def scene_name(scene):
 def digests(plan, scene, case):
     """Exit code, messages and digests of what one command writes."""
     with tempfile.TemporaryDirectory(prefix="lightmesh-pictures-") as folder:
-        flags = [flag.replace("OUT", folder) for flag in shlex.split(f"{COMMON} {CASES[case]}")]
-        command = [plan.program.resolve(), "render", scene, *last_of_each(flags), "--device", plan.device, "--threads", "1"]
+        command = command_of(plan, scene, case, folder)
         done = subprocess.run(command, capture_output=True, text=True, timeout=1800)
         said = done.stderr.replace(folder, "OUT").replace(scene, scene_name(scene))
         # A manifest has the version of the program and checksums of frames, which count themselves.
         written = (path for path in sorted(Path(folder).iterdir()) if path.name != "manifest.json")
-        files = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in written}
+        files = {path.name: hashlib.sha256(steady(path)).hexdigest() for path in written}
         return {"exit": done.returncode, "said": VARIES.sub("…", said), "files": files}
+
+
+def command_of(plan, scene, case, folder):
+    """The command that writes the files of a case to a folder."""
+    # The Python of a virtual environment is a link, and another one where it leads.
+    program = plan.program.absolute()
+    if plan.face != "cli":
+        return [program, *([PYTHON] if plan.face == "python" else []), case, scene, folder, plan.device]
+    flags = [flag.replace("OUT", folder) for flag in shlex.split(CLI[case])]
+    return [program, "render", scene, *last_of_each(flags), "--device", plan.device, "--threads", "1"]
+
+
+def steady(path):
+    """What is the same in every run of a file."""
+    if path.suffix != ".json":
+        return path.read_bytes()
+    return json.dumps({key: value for key, value in json.loads(path.read_text()).items() if key not in UNSTEADY}).encode()
 
 
 def last_of_each(flags):
