@@ -31,7 +31,9 @@ ROOT = Path(__file__).resolve().parents[2]
 MODELS = (".obj", ".gltf", ".glb", ".ply", ".stl")
 
 # Times, rates and free memory in messages.
-VARIES = re.compile(r"(, about )?\d+(\.\d+)? ?(ms|s|min|h|GiB free)\b( left)?|\d+\.\d+ per second")
+VARIES = re.compile(r"\d+(\.\d+)? ?(ms|s|min|h|GiB free)\b|\d+\.\d+ per second")
+# What is said of the time that is left, if it is worth a word.
+LEFT = re.compile(r", about [\w ]+ left")
 
 # What all pictures have.
 QUIET = "--progress none --color never"
@@ -120,7 +122,7 @@ def digests(plan, scene, case):
         # A manifest has the version of the program and checksums of frames, which count themselves.
         written = (path for path in sorted(Path(folder).iterdir()) if path.name != "manifest.json")
         files = {path.name: hashlib.sha256(steady(path)).hexdigest() for path in written}
-        return {"exit": done.returncode, "said": VARIES.sub("…", said), "files": files}
+        return {"exit": done.returncode, "said": VARIES.sub("…", LEFT.sub("", said)), "files": files}
 
 
 def command_of(plan, scene, case, folder):
