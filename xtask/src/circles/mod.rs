@@ -17,11 +17,8 @@ use self::imports::{Imports, Module};
 use crate::verdict::{Outcome, Verdict};
 
 /// Crates in which circles are left. All others are checked with [`Extent::Paths`].
-const EXCEPTIONS: [(&str, Extent); 3] = [
-    ("crates/layout/src", Extent::Nothing),
-    ("crates/render/src", Extent::Uses),
-    ("xtask/src", Extent::Uses),
-];
+const EXCEPTIONS: [(&str, Extent); 3] =
+    [("crates/layout/src", Extent::Nothing), ("crates/render/src", Extent::Uses), ("xtask/src", Extent::Uses)];
 
 pub(crate) fn check(root: &Path) -> Outcome {
     let mut problems = Vec::new();
