@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let here = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
-    // As for the compiler of devices (`xtask/src/kernels/mod.rs`): includes are searched for in all of them.
+    // As for the compiler of devices (`xtask/src/kernels/sources.rs`): includes are searched for in all of them.
     let mut folders = Vec::new();
     for name in ["kernels", "trace", "render"] {
         folders.push(here.join("..").join(name).join("src").canonicalize()?);

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use crate::literal::Constant;
-use crate::{Record, constants, counters, gathered, geometry, mesh, scene, stages, structure};
+use crate::record::Outline;
+use crate::{codes, constants, counters, gathered, geometry, mesh, scene, stages, structure};
 
 /// How the two compilers of kernels express `offsetof`: NVRTC has no `<stddef.h>`, and no builtin of that name.
 const PLACE_OF: &str = "
@@ -25,31 +26,33 @@ pub fn header() -> String {
         let _ = writeln!(text, "#define {} {}", constant.name, constant.literal);
     }
     text.push_str(PLACE_OF);
-    counters::print(&mut text);
-    geometry::print(&mut text);
-    scene::print(&mut text);
+    print_records(&mut text, &[counters::outlines(), geometry::outlines(), scene::outlines()]);
     structure::print(&mut text);
-    mesh::print(&mut text);
-    gathered::print(&mut text);
-    stages::print(&mut text);
+    print_records(&mut text, &[mesh::outlines(), gathered::outlines(), stages::outlines()]);
     text
 }
 
-pub(crate) fn print_record<T: Record>(text: &mut String) {
-    let name = T::NAME;
+/// Prints the records of some modules.
+fn print_records(text: &mut String, modules: &[Vec<Outline>]) {
+    for record in modules.iter().flatten() {
+        print_record(text, record);
+    }
+}
+
+fn print_record(text: &mut String, record: &Outline) {
+    let Outline { name, size, alignment, fields } = record;
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "\nstruct alignas({}) {name} {{", align_of::<T>());
-    print_codes(text, &constants::of_record(name));
+    let _ = writeln!(text, "\nstruct alignas({alignment}) {name} {{");
+    print_codes(text, &codes::of_record(name));
     let mut print = |line: String| {
         let _ = writeln!(text, "{line}");
     };
-    let fields = T::fields();
-    for field in &fields {
+    for field in fields {
         print(format!("    {};", field.declaration));
     }
     print("};".to_owned());
-    print(format!("static_assert(sizeof({name}) == {}, \"size of {name}\");", size_of::<T>()));
-    for field in &fields {
+    print(format!("static_assert(sizeof({name}) == {size}, \"size of {name}\");"));
+    for field in fields {
         print(format!(
             "static_assert(PLACE_OF({name}, {0}) == {1}, \"place of {name}::{0}\");",
             field.name, field.offset
@@ -81,16 +84,16 @@ fn print_docs(text: &mut String, indent: &str, docs: &[&str]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Bvh, Hit};
+    use crate::geometry::{Bvh, Hit, Triangle};
 
     #[test]
     fn fields_are_declared_as_in_rust() {
         let mut text = String::new();
-        print_record::<Bvh>(&mut text);
+        print_record(&mut text, &Outline::of::<Bvh>());
         assert!(text.contains("    const BvhNode *nodes;\n"), "{text}");
         assert!(text.contains("static_assert(PLACE_OF(Bvh, triangles) == 8,"), "{text}");
         let mut text = String::new();
-        print_record::<crate::geometry::Triangle>(&mut text);
+        print_record(&mut text, &Outline::of::<Triangle>());
         assert!(text.contains("    float corners[3][4];\n"), "{text}");
     }
 
@@ -100,7 +103,7 @@ mod tests {
             "// Threads of a warp, and the maximum number of surface points of an item.\n#define WARP 32u\n"
         ));
         let mut text = String::new();
-        print_record::<Hit>(&mut text);
+        print_record(&mut text, &Outline::of::<Hit>());
         assert!(text.contains("no triangle\".\n        NONE = 0xffffffffu,\n    };\n    float t;\n"), "{text}");
     }
 }

@@ -14,6 +14,7 @@
 //!
 //! This is a separate crate because the tool that generates the header and the kernels needs nothing else of the renderer.
 
+mod codes;
 pub mod constants;
 pub mod counters;
 pub mod gathered;

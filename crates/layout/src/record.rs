@@ -30,6 +30,23 @@ pub struct Field {
     pub offset: usize,
 }
 
+/// What the header says of a record.
+pub(crate) struct Outline {
+    pub(crate) name: &'static str,
+    /// Its size in bytes.
+    pub(crate) size: usize,
+    /// Its alignment in bytes.
+    pub(crate) alignment: usize,
+    /// Its fields in order.
+    pub(crate) fields: Vec<Field>,
+}
+
+impl Outline {
+    pub(crate) fn of<T: Record>() -> Outline {
+        Outline { name: T::NAME, size: size_of::<T>(), alignment: align_of::<T>(), fields: T::fields() }
+    }
+}
+
 macro_rules! scalar {
     ($($rust:ty => $c:literal),*) => {
         $(impl DeviceType for $rust {
@@ -139,9 +156,9 @@ macro_rules! records {
             }
         )*
 
-        /// Prints this module's records.
-        pub(crate) fn print(text: &mut String) {
-            $($crate::header::print_record::<$name>(text);)*
+        /// The outlines of this module's records, in order.
+        pub(crate) fn outlines() -> Vec<$crate::record::Outline> {
+            vec![$($crate::record::Outline::of::<$name>()),*]
         }
     };
 }

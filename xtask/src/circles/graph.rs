@@ -4,25 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::imports::{Imports, Module};
 
-/// What counts as an import.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Extent {
-    /// Imports, and paths that are written out in the code.
-    Paths,
-    /// Imports alone.
-    Uses,
-    /// Nothing.
-    Nothing,
-}
-
 /// Longer chains of re-exports are not followed.
 const DEEPEST: usize = 8;
 
 /// Which module needs which, with re-exports followed to the defining module.
-pub(super) fn edges(modules: &BTreeMap<Module, Imports>, extent: Extent) -> BTreeMap<Module, BTreeSet<Module>> {
+pub(super) fn edges(modules: &BTreeMap<Module, Imports>) -> BTreeMap<Module, BTreeSet<Module>> {
     let targets = |module: &Module, imports: &Imports| {
-        let written = imports.written.iter().filter(|_| extent == Extent::Paths);
-        let found = imports.uses.iter().chain(written).filter_map(|path| defined_in(modules, path, 0));
+        let found = imports.uses.iter().chain(&imports.written).filter_map(|path| defined_in(modules, path, 0));
         found.filter(|target| target != module).collect()
     };
     modules.iter().map(|(module, imports)| (module.clone(), targets(module, imports))).collect()

@@ -12,26 +12,17 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use self::graph::{Extent, circles, edges};
+use self::graph::{circles, edges};
 use self::imports::{Imports, Module};
 use crate::verdict::{Outcome, Verdict};
-
-/// Crates in which circles are left. All others are checked with [`Extent::Paths`].
-const EXCEPTIONS: [(&str, Extent); 3] =
-    [("crates/layout/src", Extent::Nothing), ("crates/render/src", Extent::Uses), ("xtask/src", Extent::Uses)];
 
 pub(crate) fn check(root: &Path) -> Outcome {
     let mut problems = Vec::new();
     let mut files = 0;
     for folder in source_folders(root)? {
-        let exception = EXCEPTIONS.iter().find(|(name, _)| folder == Path::new(name));
-        let extent = exception.map_or(Extent::Paths, |&(_, extent)| extent);
-        if extent == Extent::Nothing {
-            continue;
-        }
         let modules = modules_of(&root.join(&folder))?;
         files += modules.len();
-        let circles = circles(&edges(&modules, extent));
+        let circles = circles(&edges(&modules));
         let folder = folder.display();
         problems.extend(circles.iter().map(|circle| format!("{folder}: circular imports: {}", circle.join(" -> "))));
     }
@@ -91,7 +82,7 @@ mod tests {
     }
 
     fn circles_of(files: &[(&str, &str)]) -> Vec<String> {
-        circles(&edges(&crate_of(files), Extent::Paths)).iter().map(|circle| circle.join(" ")).collect()
+        circles(&edges(&crate_of(files))).iter().map(|circle| circle.join(" ")).collect()
     }
 
     #[test]
@@ -102,7 +93,6 @@ mod tests {
             ("b", "use super::A as Other;"),
         ];
         assert_eq!(circles_of(&files), ["a b a"]);
-        assert_eq!(circles(&edges(&crate_of(&files), Extent::Uses)), [["a", "b", "a"]]);
     }
 
     #[test]
@@ -122,8 +112,6 @@ mod tests {
             circles_of(&[("a", "mod child;\nfn a() { child::run() }"), ("a::child", "use super::A;")]),
             ["a a::child a"]
         );
-        let files = crate_of(&[a, ("b", "fn b() { crate::a::a() }")]);
-        assert_eq!(circles(&edges(&files, Extent::Uses)), Vec::<Vec<String>>::new());
     }
 
     #[test]
@@ -171,10 +159,7 @@ mod tests {
         ];
         assert_eq!(circles_of(&files), Vec::<String>::new());
         let b = vec!["b".to_owned()];
-        assert_eq!(
-            edges(&crate_of(&files), Extent::Paths)[&b],
-            BTreeSet::from([vec!["a".to_owned(), "part".to_owned()]])
-        );
+        assert_eq!(edges(&crate_of(&files))[&b], BTreeSet::from([vec!["a".to_owned(), "part".to_owned()]]));
     }
 
     #[test]

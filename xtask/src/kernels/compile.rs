@@ -8,8 +8,12 @@ use std::process::Command;
 use cudarc::nvrtc::result::{self, NvrtcError};
 use cudarc::nvrtc::sys;
 
+use super::parallel::in_parallel;
+use super::sources::{Module, SOURCES, Source, ptx_path};
 use super::tools::Tools;
-use super::{Module, ONE, SOURCES, Source, in_parallel};
+
+/// The argument, before the name of a module, with which this program prints its PTX and does nothing else.
+pub(crate) const ONE: &str = "--module";
 
 /// The oldest supported devices have compute capability 7.5. No operation is fused or approximated, so that decisions are the
 /// same as on the host. Headers contain functions that not every kernel calls, which does not deserve a warning.
@@ -87,7 +91,7 @@ fn load(tools: &Tools) -> Result<libloading::Library, Box<dyn Error>> {
 
 /// The PTX that is committed if the compiler gives it in some attempt; else that of the last one.
 fn committed(source: &Source) -> Result<String, String> {
-    let committed = fs::read_to_string(super::ptx_path(&source.module)).ok();
+    let committed = fs::read_to_string(ptx_path(&source.module)).ok();
     let mut ptx = in_a_process(source)?;
     for _ in 1..ATTEMPTS {
         if committed.is_none() || committed.as_ref() == Some(&ptx) {

@@ -11,7 +11,7 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use super::{LAYOUT, sources_under};
+use super::sources::{LAYOUT, sources_under};
 
 /// Macros and numbers that only kernels use, and why.
 const ALLOWED: [(&str, &str); 35] = [
@@ -167,7 +167,7 @@ mod tests {
     use std::path::PathBuf;
 
     use super::*;
-    use crate::kernels::SOURCES;
+    use crate::kernels::sources::SOURCES;
 
     fn whats(text: &str) -> Vec<String> {
         suspects(text).into_iter().map(|(_, what)| what).collect()

@@ -12,24 +12,20 @@
 mod compile;
 mod copies;
 mod digest;
+mod parallel;
 mod report;
+mod sources;
 mod tools;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
-use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
 
+use self::sources::{LAYOUT, Module, PTX, SOURCES, Source, kernel_files, ptx_path};
 use crate::verdict::{Outcome, Verdict};
+pub(crate) use compile::ONE;
 
-/// The folders of kernels and headers, in which includes are searched for; all paths in this module are relative to the repository.
-const SOURCES: [&str; 3] = ["crates/kernels/src", "crates/trace/src", "crates/render/src"];
-const LAYOUT: &str = "crates/kernels/src/cuda/layout.cuh";
-const PTX: &str = "crates/kernels/src/cuda/ptx";
 const REPORT: &str = "docs/kernels.md";
 const TOOLS: &str = "target/cuda-tools";
 
@@ -38,25 +34,6 @@ struct Product {
     path: PathBuf,
     content: Option<String>,
 }
-
-/// A kernel file.
-struct Source {
-    /// Name of its module.
-    module: String,
-    /// The folder among [`SOURCES`] that has it.
-    folder: PathBuf,
-    /// Relative to `folder`.
-    path: PathBuf,
-}
-
-/// A module as PTX.
-struct Module {
-    name: String,
-    ptx: String,
-}
-
-/// The argument, before the name of a module, with which this program prints its PTX and does nothing else.
-pub(crate) const ONE: &str = "--module";
 
 /// What is done with the products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -187,29 +164,6 @@ impl Product {
     }
 }
 
-fn ptx_path(module: &str) -> PathBuf {
-    Path::new(PTX).join(format!("{module}.ptx"))
-}
-
-/// Does work for each of some items, for as many at once as there are processors.
-fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let results = Mutex::new(Vec::new());
-    let take = || {
-        loop {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            let Some(item) = items.get(at) else { break };
-            let result = work(item);
-            results.lock().unwrap_or_else(PoisonError::into_inner).push((at, result));
-        }
-    };
-    let processors = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| (0..processors.min(items.len())).for_each(|_| drop(scope.spawn(take))));
-    let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
-    results.sort_by_key(|(at, _)| *at);
-    results.into_iter().map(|(_, result)| result).collect()
-}
-
 /// Files among the PTX that belong to no module.
 fn left_over(sources: &[Source]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let mut found = Vec::new();
@@ -224,50 +178,9 @@ fn left_over(sources: &[Source]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     Ok(found)
 }
 
-/// The kernel files, in order of module: `kernel.cu` is named after its folder, any other file after itself.
-fn kernel_files() -> Result<Vec<Source>, Box<dyn Error>> {
-    let mut sources = Vec::new();
-    for folder in SOURCES {
-        for path in sources_under(Path::new(folder), &["cu"])? {
-            let named_by = if path.ends_with("kernel.cu") { path.parent() } else { Some(path.as_path()) };
-            let module = named_by.and_then(Path::file_stem).and_then(OsStr::to_str);
-            let module = module.ok_or_else(|| format!("{} has no module name", path.display()))?.to_owned();
-            sources.push(Source { module, folder: folder.into(), path: path.strip_prefix(folder)?.to_owned() });
-        }
-    }
-    sources.sort_by(|a, b| a.module.cmp(&b.module));
-    Ok(sources)
-}
-
-/// All files under `folder` with one of some extensions, in order.
-fn sources_under(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
-    let mut found = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(inner) = folders.pop() {
-        for entry in fs::read_dir(inner)? {
-            let path = entry?.path();
-            let ending = path.extension().and_then(OsStr::to_str);
-            if path.is_dir() {
-                folders.push(path);
-            } else if ending.is_some_and(|ending| endings.contains(&ending)) {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    Ok(found)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn results_are_in_the_order_of_the_items() {
-        let items: Vec<u32> = (0..100).collect();
-        assert_eq!(in_parallel(&items, |item| item * item), items.iter().map(|item| item * item).collect::<Vec<_>>());
-        assert_eq!(in_parallel(&[] as &[u32], |item| *item), []);
-    }
 
     /// The committed products are those of the present sources: a changed source without its PTX fails here.
     #[test]

@@ -6,8 +6,9 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
+use super::parallel::in_parallel;
+use super::sources::Module;
 use super::tools::Tools;
-use super::{Module, in_parallel};
 
 /// The oldest supported devices, and those on which speed is measured.
 const ARCHITECTURES: [&str; 2] = ["sm_75", "sm_90"];

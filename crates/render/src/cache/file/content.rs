@@ -28,9 +28,10 @@ use lightmesh_scene::LightKind;
 
 use super::super::stored::{Stored, StoredAnswers, StoredColumn};
 use super::super::{Content, Places, Section, Seen};
+use super::fault::MeshFault;
 use super::input::Input;
 use super::output::write_difference;
-use super::{MeshFault, gathered, pack};
+use super::{gathered, pack};
 
 /// Bits of a brick's key.
 const KEY_BITS: u32 = 3 * AXIS_BITS;

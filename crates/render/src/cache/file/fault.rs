@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use lightmesh_files::{ReadError, TargetError};
 use lightmesh_memory::Short;
 
-use super::VERSION;
+use super::frame::VERSION;
 use crate::error::RenderError;
 
 /// Why a mesh cannot be saved.

@@ -22,7 +22,7 @@ use lightmesh_layout::constants::SURFACE_KINDS;
 use lightmesh_layout::gathered::{FarLight, SurfaceLight};
 
 use super::super::SavedGathered;
-use super::MeshFault;
+use super::fault::MeshFault;
 use super::input::Input;
 use super::output::write_difference;
 use crate::gathered::saved::{

@@ -3,9 +3,9 @@
 use std::io::Read;
 
 use glam::Vec3;
-use lightmesh_memory::Budget;
+use lightmesh_memory::{Budget, Short};
 
-use super::{MeshFault, short};
+use super::fault::MeshFault;
 
 /// Numbers that are read at once.
 const AT_ONCE: usize = 1 << 16;
@@ -93,4 +93,9 @@ impl<R: Read> Input<R> {
         }
         Err(MeshFault::Damaged("its keys are not in order"))
     }
+}
+
+/// What does not fit.
+fn short(needed: u64, budget: Budget) -> Result<(), MeshFault> {
+    budget.check(needed).map_err(|short: Short| MeshFault::Memory(short))
 }

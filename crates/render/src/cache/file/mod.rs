@@ -20,6 +20,7 @@
 
 mod content;
 mod fault;
+mod frame;
 mod gathered;
 mod input;
 mod output;
@@ -29,22 +30,14 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use lightmesh_files::{Output, Portion, ReadError, read};
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::Budget;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
+use self::frame::VERSION;
 use super::Content;
 use crate::prepared::PreparedScene;
 pub use fault::{MeshFault, MeshFileError, MeshSaveError};
-
-/// How files begin.
-pub const MAGIC: [u8; 8] = *b"LM MESH\0";
-/// To be raised with every change of the format, of what decides what light points see, and
-/// of how light is gathered.
-const VERSION: u32 = 4;
-/// Bytes of the header.
-pub const HEADER: usize = 24;
-/// Bytes of the trailer.
-pub const TRAILER: usize = 16;
+pub use frame::{HEADER, MAGIC, TRAILER};
 
 /// What a saved mesh holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -177,9 +170,4 @@ impl Header {
         let geometry = rest.first_chunk().ok_or_else(cut_off)?;
         Ok(Header { triangles: u32::from_le_bytes(*triangles), geometry: u64::from_le_bytes(*geometry) })
     }
-}
-
-/// What does not fit.
-fn short(needed: u64, budget: Budget) -> Result<(), MeshFault> {
-    budget.check(needed).map_err(|short: Short| MeshFault::Memory(short))
 }

@@ -9,35 +9,27 @@
 
 mod cluster;
 mod reinsert;
+mod work;
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use fearless_simd::Level;
 use glam::{DVec3, Vec3, Vec3A};
-use lightmesh_layout::constants::BVH_STACK;
 use lightmesh_scene::{Bounds, Instance};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use rayon::prelude::*;
 
-use super::{Bvh, Node};
+use super::tree::{Bvh, Node};
 use crate::accel::approach::{self, Approach};
 use crate::accel::distinct::distinct;
 use crate::accel::{Coverage, Instanced, ShapeTree, Triangle};
+pub use work::{LEVELS, Work};
 
-/// Most levels: of the binary tree without its leaves, and so of the wide one.
-pub const LEVELS: usize = BVH_STACK as usize;
 /// Most triangles in a leaf: the node format has room for three.
 const LEAF_SIZE: u32 = 3;
-
-/// What a build does.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Work {
-    /// Boxes that others are compared with.
-    pub boxes: u64,
-}
 
 pub(super) fn build(triangles: &[Triangle]) -> Bvh {
     let (nodes, triangles) = level(&usable(triangles));

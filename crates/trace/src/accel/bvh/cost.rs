@@ -1,7 +1,7 @@
 //! The cost of a tree by the surface area heuristic.
 
 use super::build::{Child, children, extent, planes};
-use super::{Bvh, Node};
+use super::tree::{Bvh, Node};
 
 /// What a ray that crosses the box around all triangles is expected to do, by the surface area heuristic (MacDonald, Booth 1990).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

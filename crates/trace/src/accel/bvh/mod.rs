@@ -1,52 +1,28 @@
 //! A wide BVH: eight children per node, 80 bytes per node, after Ylitie, Karras, Laine: *Efficient Incoherent Ray Traversal on
 //! GPUs Through Compressed Wide BVHs* (HPG 2017).
 //!
+//! * `tree`: nodes and triangles as plain arrays, which devices copy.
 //! * `build`: the tree comes from `obvhs`; we make sure that every box holds its triangles, and store these in leaf order.
 //! * `cost`: how good the tree is.
-//! * `walk`: the traversal by a ray; `search`: by a region. Nodes and triangles are plain arrays, which devices copy.
+//! * `walk`: the traversal by a ray; `search`: by a region.
 //! * `packet`: the traversal by many coherent rays at once.
 
 pub(crate) mod build;
 mod cost;
 mod packet;
 mod search;
+mod tree;
 mod walk;
 
-use std::ops::Range;
-use std::sync::Arc;
-
-use fearless_simd::{Level, Simd};
+use fearless_simd::Simd;
 use glam::Vec3;
 use lightmesh_scene::Instance;
-use obvhs::cwbvh::node::CwBvhNode as Node;
 
 pub use cost::BvhCost;
+pub use tree::Bvh;
 
-use super::approach::Approach;
-use super::{
-    Accelerator, Coverage, Form, Hit, Instanced, Ray, Region, ShapeTree, ShortSegments, Take, Triangle, Visitor,
-};
+use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle, Visitor};
 use crate::simd::dispatch;
-
-/// A compressed wide bounding volume hierarchy; clones share it.
-#[derive(Clone, Debug)]
-pub struct Bvh {
-    /// Root first; empty if there are no triangles.
-    nodes: Arc<[Node]>,
-    /// In leaf order.
-    triangles: Arc<[Triangle]>,
-    /// Number of levels: the largest stack that a walk needs.
-    depth: usize,
-    /// The stored triangles of each shape, and its tree: these come after that of the scene, in this order.
-    shapes: Arc<[(Range<u32>, ShapeTree)]>,
-    /// Shapes at their places. Holders among the triangles name them.
-    instances: Arc<[Instanced]>,
-    /// The most levels of a shape's tree.
-    shape_depth: usize,
-    approach: Approach,
-    coverage: Coverage,
-    level: Level,
-}
 
 impl Bvh {
     /// Builds the tree over the usable triangles, one of identical ones.
@@ -61,60 +37,6 @@ impl Bvh {
         build::build_levels(own, stored, instances, known)
     }
 
-    /// The tree of a shape as if it were alone.
-    fn shape_level(&self, shape: usize) -> (Vec<Node>, Vec<Triangle>) {
-        let ShapeTree { root, leaves } = self.shapes[shape].1;
-        let (next_root, next_leaves) = match self.shapes.get(shape + 1) {
-            Some((_, next)) => (next.root as usize, next.leaves as usize),
-            None => (self.nodes.len(), self.triangles.len()),
-        };
-        let mut nodes = self.nodes[root as usize..next_root].to_vec();
-        for node in &mut nodes {
-            node.child_base_idx -= root;
-            node.primitive_base_idx -= leaves;
-        }
-        (nodes, self.triangles[leaves as usize..next_leaves].to_vec())
-    }
-
-    /// Its instances.
-    #[doc(hidden)]
-    pub fn instances(&self) -> &Arc<[Instanced]> {
-        &self.instances
-    }
-
-    /// The opacities of triangles that are cut out.
-    #[doc(hidden)]
-    pub fn with_coverage(self, coverage: &Coverage) -> Bvh {
-        Bvh { coverage: coverage.clone(), ..self }
-    }
-
-    /// These opacities.
-    #[doc(hidden)]
-    pub fn coverage(&self) -> &Coverage {
-        &self.coverage
-    }
-
-    /// The nodes, root first.
-    #[doc(hidden)]
-    pub fn nodes(&self) -> &[Node] {
-        &self.nodes
-    }
-
-    /// The triangles in leaf order.
-    pub fn triangles(&self) -> &[Triangle] {
-        &self.triangles
-    }
-
-    /// Number of levels, of the scene's tree and those of shapes together.
-    pub fn depth(&self) -> usize {
-        self.depth + self.shape_depth
-    }
-
-    /// Centre and radius of the sphere of interest.
-    pub fn approach(&self) -> (Vec3, f32) {
-        self.approach.parts()
-    }
-
     /// Visits the triangles of all leaves whose boxes come as close as `slack` to the segment from `origin` along `direction`, near octants
     /// first.
     #[inline(always)]
@@ -127,13 +49,6 @@ impl Bvh {
     ) {
         let ray = walk::Walked::new(origin, direction, slack);
         walk::walk(simd, self, 0, &ray, walk::Stack::new(self.depth).entries(), visitor);
-    }
-
-    /// The same tree traversed at another SIMD level; every level gives the same bits.
-    #[doc(hidden)]
-    pub fn at_level(mut self, level: Level) -> Bvh {
-        self.level = level;
-        self
     }
 }
 

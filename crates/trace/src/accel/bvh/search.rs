@@ -11,8 +11,8 @@ use fearless_simd_macros::simd;
 use glam::Vec3A;
 use lightmesh_layout::constants::{BVH_MARGIN, INSTANCE_MARGIN};
 
+use super::tree::{Bvh, Node};
 use super::walk::{Guide, Stack, descend, octant_of, planes};
-use super::{Bvh, Node};
 use crate::accel::region::Boxes;
 use crate::accel::sieve::{Sieve, Take};
 use crate::accel::{Instanced, Region, Triangle};

@@ -25,7 +25,7 @@ use fearless_simd_macros::simd;
 use glam::{Vec3, Vec3A};
 use lightmesh_layout::constants::{BVH_MARGIN, FIRST_INNER, INNER_HITS, LEAST_COMPONENT, ROOT_HIT, TRIANGLE_HITS};
 
-use super::{Bvh, Node};
+use super::tree::{Bvh, Node};
 use crate::accel::visit::{All, Any, Closest, Short, Visitor};
 use crate::accel::{Hit, Instanced, Ray, ShortSegments, Triangle};
 

@@ -4,10 +4,11 @@ use glam::{DVec3, UVec3, Vec3};
 use lightmesh_scene::Bounds;
 use rayon::prelude::*;
 
+use super::cells::Grid;
 use super::hash::geometry_hash;
 use super::lattice::{Lattice, cells_between, margin};
+use super::options::{GridError, GridOptions, Levels};
 use super::overlap::triangle_meets_box;
-use super::{Grid, GridError, GridOptions, Levels};
 use crate::accel::approach::Approach;
 use crate::accel::distinct::distinct;
 use crate::accel::{Coverage, Triangle};

@@ -5,7 +5,7 @@
 //! Pfaltz: *Distance Functions on Digital Pictures*, Pattern Recognition 1968): one forward, in which each cell takes the least
 //! distance of the thirteen neighbours before it, plus one, and one backward.
 
-use super::Grid;
+use super::cells::Grid;
 
 impl Grid {
     /// For each cell of the outer grid, x fastest, the distance in cells to the nearest non-empty one: 0 for non-empty cells, at most 255.

@@ -28,8 +28,9 @@ use lightmesh_files::Output;
 use lightmesh_scene::Bounds;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
+use super::build;
+use super::cells::Grid;
 use super::hash::geometry_hash;
-use super::{Grid, build};
 use crate::accel::{Coverage, Triangle};
 pub use fault::{GridFault, GridFileError, GridSaveError};
 

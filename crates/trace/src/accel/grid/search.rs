@@ -8,8 +8,8 @@ use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 use glam::UVec3;
 
+use super::cells::{Cell, Grid};
 use super::lattice::{Lattice, cells_between};
-use super::{Cell, Grid};
 use crate::accel::sieve::{Sieve, Take};
 use crate::accel::{Hit, Region, Triangle};
 

@@ -12,7 +12,7 @@
 use glam::{IVec3, UVec3, Vec3};
 use lightmesh_layout::constants::LEAST_COMPONENT;
 
-use super::{Cell, Grid};
+use super::cells::{Cell, Grid};
 use crate::accel::visit::Visitor;
 
 /// How a walk through one grid ended.

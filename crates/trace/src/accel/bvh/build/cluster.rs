@@ -17,7 +17,7 @@ use obvhs::bvh2::node::Bvh2Node as Node;
 use obvhs::ploc::morton::morton_encode_u128_unorm;
 use rayon::prelude::*;
 
-use super::{LEVELS, Work};
+use super::work::{LEVELS, Work};
 
 /// Neighbours that a box looks at on each side,
 const DISTANCE: usize = 14;

@@ -9,7 +9,7 @@ use obvhs::bvh2::node::Bvh2Node as Node;
 use obvhs::bvh2::reinsertion::reinsert_node;
 use rayon::prelude::*;
 
-use super::{LEVELS, Work};
+use super::work::{LEVELS, Work};
 
 /// Share of the nodes that are moved in the first round,
 const SHARE: f32 = 0.1;

@@ -26,7 +26,7 @@ mod size;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
-use super::Bvh;
+use super::tree::Bvh;
 use super::walk::{Stack, Walked, enter, walk};
 use crate::accel::packet::{AnyPacket, ClosestPacket, LANES, PacketVisitor};
 use crate::accel::visit::Visitor;

@@ -6,7 +6,7 @@ use glam::Vec3A;
 
 use super::rays::{Interval, Packet, PacketSlabs};
 use super::size::GROUPS;
-use crate::accel::bvh::Node;
+use crate::accel::bvh::tree::Node;
 use crate::accel::packet::LANES;
 
 /// The planes of a node's children, by axis: those that the rays cross first, and those that they cross last.
