@@ -6,11 +6,12 @@ import importlib.util
 
 import bpy
 
-from . import engine, panels, properties
+from . import engine, operators, panels, properties
 
 
 def register() -> None:
     properties.register()
+    operators.register()
     panels.register()
     bpy.utils.register_class(engine.LightmeshEngine)
     if _installed():
@@ -26,6 +27,7 @@ def unregister() -> None:
         session.unregister()
     bpy.utils.unregister_class(engine.LightmeshEngine)
     panels.unregister()
+    operators.unregister()
     properties.unregister()
 
 

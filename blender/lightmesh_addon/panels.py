@@ -92,6 +92,21 @@ class LIGHTMESH_PT_film(RenderPanel, bpy.types.Panel):
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
+class LIGHTMESH_PT_sun_study(RenderPanel, bpy.types.Panel):
+    bl_label = "Sun Study"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def show(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+        sun = context.scene.lightmesh.sun
+        for names in (("latitude", "longitude", "north"), ("year", "month", "day", "offset"), ("begin", "end", "step")):
+            column = layout.column(align=True)
+            for name in names:
+                column.prop(sun, name)
+        layout.prop(sun, "strength")
+        layout.operator("lightmesh.sun_hours", icon="LIGHT_SUN")
+        layout.operator("lightmesh.render_day", icon="RENDER_ANIMATION")
+
+
 class LIGHTMESH_PT_passes(RenderPanel, bpy.types.Panel):
     bl_label = "Passes"
     bl_context = "view_layer"
@@ -114,6 +129,7 @@ CLASSES = (
     LIGHTMESH_PT_light_mesh,
     LIGHTMESH_PT_light_paths,
     LIGHTMESH_PT_film,
+    LIGHTMESH_PT_sun_study,
     LIGHTMESH_PT_passes,
 )
 

@@ -28,6 +28,38 @@ def device_items(self=None, context: bpy.types.Context | None = None) -> list[tu
     return _devices
 
 
+class LightmeshSunSettings(bpy.types.PropertyGroup):
+    """A day at a place; numbers are those of `--sun` and `--sky`."""
+
+    latitude: FloatProperty(name="Latitude", min=-90.0, max=90.0, default=54.98, precision=4, step=100, description="Degrees north")
+    longitude: FloatProperty(name="Longitude", min=-180.0, max=180.0, default=82.9, precision=4, step=100, description="Degrees east")
+    north: FloatProperty(
+        name="North", min=-360.0, max=360.0, default=0.0, precision=1, step=100, description="Degrees of north, clockwise from +Y, seen from above"
+    )
+    year: IntProperty(name="Year", min=1901, max=2099, default=2026, description="Year of the day")
+    month: IntProperty(name="Month", min=1, max=12, default=6, description="Month of the day")
+    day: IntProperty(name="Day", min=1, max=31, default=21, description="Day of the month")
+    offset: FloatProperty(
+        name="UTC Offset",
+        min=-18.0,
+        max=18.0,
+        default=7.0,
+        precision=2,
+        step=50,
+        description="Hours by which the clock is ahead of universal time, with summer time if there is any",
+    )
+    begin: FloatProperty(name="From", min=0.0, max=24.0, default=6.0, precision=2, step=50, description="Hour at which the study begins")
+    end: FloatProperty(name="To", min=0.0, max=24.0, default=20.0, precision=2, step=50, description="Hour at which the study ends")
+    step: IntProperty(name="Step", min=1, max=1440, default=15, soft_max=120, description="Minutes from one position of the sun to the next")
+    strength: FloatProperty(
+        name="Sky Strength",
+        min=0.0,
+        soft_max=10.0,
+        default=1.0,
+        description="Factor of sky and sun in the frames of a day; with 1, white that faces the sun shows about 1",
+    )
+
+
 class LightmeshSceneSettings(bpy.types.PropertyGroup):
     quality: EnumProperty(name="Quality", items=QUALITIES, default="GOOD", description="How smooth soft shadows and edges are")
     mode: EnumProperty(name="Shadows", items=TECHNIQUES, default="LISTS", description="How visibility of lights is computed")
@@ -48,6 +80,7 @@ class LightmeshSceneSettings(bpy.types.PropertyGroup):
     )
     radius: FloatProperty(name="Radius", min=1.0, soft_max=5.0, default=2.1, description="Radius of interpolation in steps")
     seed: IntProperty(name="Seed", min=0, default=0, description="Seed of the sampling pattern: the same seed gives the same image")
+    sun: PointerProperty(type=LightmeshSunSettings)
 
 
 class LightmeshViewLayerSettings(bpy.types.PropertyGroup):
@@ -59,7 +92,7 @@ class LightmeshViewLayerSettings(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (LightmeshSceneSettings, LightmeshViewLayerSettings)
+CLASSES = (LightmeshSunSettings, LightmeshSceneSettings, LightmeshViewLayerSettings)
 
 
 def register() -> None:

@@ -15,6 +15,7 @@ from mathutils import Matrix
 from . import geometry, lights, world
 from .materials import Materials
 from .textures import Textures
+from .visibility import RenderVisibility
 
 if TYPE_CHECKING:
     from ..notes import Notes
@@ -102,12 +103,20 @@ class _Group:
 
 
 class Exporter:
-    """Reads one dependency graph. `view` is the 3D view whose objects count, if it is a viewport's."""
+    """Reads one dependency graph. `view` is the 3D view whose objects count, if it is a viewport's; without one, those that renders show. `sky`
+    stands for the world, as settings of a render say it."""
 
     def __init__(
-        self, depsgraph: bpy.types.Depsgraph, notes: Notes, store: MeshStore | None = None, view: bpy.types.SpaceView3D | None = None
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        notes: Notes,
+        store: MeshStore | None = None,
+        view: bpy.types.SpaceView3D | None = None,
+        sky: str = "",
     ) -> None:
-        self.depsgraph, self.notes, self.view = depsgraph, notes, view
+        self.depsgraph, self.notes, self.view, self.sky = depsgraph, notes, view, sky
+        # Operators have no dependency graph of a render: that of the viewport stands for it.
+        self.visibility = RenderVisibility(depsgraph, notes) if view is None and depsgraph.mode == "VIEWPORT" else None
         self.store = store or MeshStore()
         textures = Textures(notes)
         if self.store.textures:
@@ -122,7 +131,7 @@ class Exporter:
         for instance in self.depsgraph.object_instances:
             stop()
             self._instance(instance)
-        surroundings = world.read(self._world(), self.materials.textures, self.notes)
+        surroundings = world.of_sky(self.sky) if self.sky else world.read(self._world(), self.materials.textures, self.notes)
         self.store.arrays = {key: kept for key, kept in self.store.arrays.items() if key in self.used}
         return Exported(
             self._geometry,
@@ -170,6 +179,8 @@ class Exporter:
     def _instance(self, instance: bpy.types.DepsgraphObjectInstance) -> None:
         obj = instance.object
         if not instance.show_self or (self.view and not self._in_view(instance)):
+            return
+        if self.visibility and not self.visibility.shows(instance):
             return
         if obj.type == "LIGHT":
             self._light(obj, instance.matrix_world)

@@ -66,6 +66,11 @@ def read(world: bpy.types.World | None, textures: Textures, notes: Notes) -> Wor
     return Reader(world, textures, notes).shader(feed(output.inputs["Surface"]))
 
 
+def of_sky(sky: str) -> World:
+    """Lightmesh's own sky, as settings of a render say it."""
+    return World(settings={"sky": sky}, digest=sky)
+
+
 def _plain(color: Sequence[float]) -> World:
     color = tuple(max(float(channel), 0.0) for channel in color)
     if not any(color):
@@ -189,7 +194,7 @@ class Reader:
         elevation, azimuth = np.degrees(node.sun_elevation), np.degrees(node.sun_rotation)
         level = np.interp(elevation, ELEVATIONS, SUNNY[kind]) * float(factor.mean())
         sky = f"clear;sun={min(max(elevation, 0.0), 90.0):g},{azimuth % 360.0:g};strength={level:g}"
-        return World(settings={"sky": sky}, digest=sky)
+        return of_sky(sky)
 
 
 def rotation_matrix(angles: Sequence[float]) -> np.ndarray:

@@ -1,0 +1,58 @@
+"""Work in a thread of its own, so that Blender goes on meanwhile. It must not touch Blender's data."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import lightmesh
+
+
+class Job:
+    """Begins at once. `work` gets the job, and returns its result."""
+
+    def __init__(self, work: Callable[[Job], Any]) -> None:
+        self.token = lightmesh.Cancel()
+        #: What is done, from 0 to 1.
+        self.share = 0.0
+        self.result = None
+        self.cancelled = False
+        #: What went wrong, as text.
+        self.error = None
+        self._work = work
+        self._thread = threading.Thread(target=self._run, name="lightmesh study", daemon=True)
+        self._thread.start()
+
+    @property
+    def ended(self) -> bool:
+        return not self._thread.is_alive()
+
+    def wait(self, seconds: float) -> bool:
+        """Waits for its end, not longer than that; whether it has ended."""
+        self._thread.join(seconds)
+        return self.ended
+
+    def cancel(self) -> None:
+        """Stops the work soon."""
+        self.token.cancel()
+
+    def follow(self, place: list[int] | None = None) -> Callable[[lightmesh.Progress], None]:
+        """What a renderer tells its progress. `place`: the number of parts done and of all, while the work has several."""
+
+        def called(progress: lightmesh.Progress) -> None:
+            done, parts = place or (0, 1)
+            self.share = max(self.share, (done + progress.done) / parts)
+
+        return called
+
+    def _run(self) -> None:
+        try:
+            self.result = self._work(self)
+        except lightmesh.Cancelled:
+            self.cancelled = True
+        except (lightmesh.LightmeshError, OSError) as error:
+            self.error = str(error)
+        except Exception as error:
+            self.error = f"Lightmesh failed ({type(error).__name__}: {error}): please report it with the text in the console"
+            raise

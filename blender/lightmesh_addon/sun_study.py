@@ -1,0 +1,123 @@
+"""Sun studies: what is exported of a scene for one, and the work on it, which needs nothing of Blender."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import bpy
+import lightmesh
+import numpy as np
+
+from . import session, settings
+from .export import camera
+from .export.scene import Exporter
+
+if TYPE_CHECKING:
+    from .job import Job
+    from .notes import Notes
+    from .output import Output
+    from .properties import LightmeshSunSettings
+
+
+@dataclass
+class Study:
+    """A scene under the sky of a day. `renderer` is called by the work, for a device may take a while to start."""
+
+    scene: lightmesh.Scene
+    renderer: Callable[[], lightmesh.Renderer]
+    settings: dict[str, Any]
+    #: What of the scene the sky stands for; may be empty.
+    replaced: str
+
+
+@dataclass
+class Hours:
+    """The hours of direct sun of an image: its picture with a legend, and the numbers, (H, W), row 0 at the top."""
+
+    png: bytes
+    values: np.ndarray
+
+
+@dataclass
+class Day:
+    """The frames that were rendered."""
+
+    count: int
+
+
+def study(depsgraph: bpy.types.Depsgraph, notes: Notes) -> Study:
+    """The study that a scene asks for, of what its camera sees."""
+    scene = depsgraph.scene
+    render, sun = scene.render, scene.lightmesh.sun
+    if scene.camera is None:
+        raise camera.CameraError("The scene has no camera: add one, and choose it in the scene's properties.")
+    size = camera.full_size(render)
+    aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
+    view = camera.of_object(scene.camera.evaluated_get(depsgraph), depsgraph, size, aspect)
+    exported = Exporter(depsgraph, notes, sky=sky(sun)).run()
+    made = exported.scene(view)
+    for text in made.warnings:
+        notes.add(text)
+    chosen = {**settings.of_scene(scene), **exported.settings, "sun": day(sun), "size": size}
+    if crop := camera.border(render, size):
+        chosen["crop"] = crop
+    device = settings.device(scene)
+    return Study(made, lambda: session.renderer(*device), chosen, replaced(depsgraph))
+
+
+def day(sun: LightmeshSunSettings) -> str:
+    """The day as `--sun` has it."""
+    minutes = round(60.0 * sun.offset)
+    offset = f"{'-' if minutes < 0 else '+'}{clock(abs(minutes))}"
+    date = f"{sun.year:04}-{sun.month:02}-{sun.day:02}{offset}"
+    hours = "-".join(clock(round(60.0 * hour)) for hour in (sun.begin, sun.end))
+    return f"{number(sun.latitude)},{number(sun.longitude)},{date},{hours}/{sun.step}m"
+
+
+def sky(sun: LightmeshSunSettings) -> str:
+    """The sky as `--sky` has it. Where the sun stands in it comes from the day."""
+    return f"clear;north={number(sun.north)};strength={number(sun.strength)}"
+
+
+def clock(minutes: int) -> str:
+    return f"{minutes // 60:02}:{minutes % 60:02}"
+
+
+def number(value: float) -> str:
+    """Blender's numbers of 32 bits as they were typed."""
+    return f"{value:.5f}".rstrip("0").rstrip(".")
+
+
+def replaced(depsgraph: bpy.types.Depsgraph) -> str:
+    """What of the scene the sky of a study stands for."""
+    world, objects = depsgraph.scene.world, depsgraph.view_layer.objects
+    suns = [obj.name for obj in objects if obj.type == "LIGHT" and obj.data.type == "SUN" and not obj.hide_render]
+    names = ([f"World “{world.name}”"] if world else []) + [f"Light “{name}”" for name in suns]
+    return ", ".join(names)
+
+
+def hours(asked: Study, job: Job) -> Hours:
+    """Computes the hours of direct sun."""
+    found = asked.renderer().sun_hours(asked.scene, progress=job.follow(), cancel=job.token, **asked.settings)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "hours.png"
+        found.save(path)
+        return Hours(path.read_bytes(), found.hours)
+
+
+def frames(asked: Study, output: Output, job: Job) -> Day:
+    """Renders the frames of the day and writes them."""
+    output.path.parent.mkdir(parents=True, exist_ok=True)
+    place = [0, 1]
+    film = asked.renderer().film(
+        asked.scene, output.path, progress=job.follow(place), cancel=job.token, **asked.settings, **output.settings
+    )
+    count = place[1] = max(len(film), 1)
+    rendered = 0
+    for rendered, _ in enumerate(film, 1):
+        place[0] = min(rendered, count - 1)
+    return Day(rendered)
