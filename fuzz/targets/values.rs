@@ -8,11 +8,11 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use libfuzzer_sys::fuzz_target;
-use lightmesh::scene::SkyKind;
 use lightmesh::request::value::{
-    Background, Bound, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec, Positive,
-    Size, SkySpec, Smooth, SunSpec, ValueError, clock, numbered,
+    Background, Bound, ByteSize, CameraView, Color, Dims, EnvironmentSpec, Exposure, FrameRate, Frames, LightSpec,
+    Positive, Size, SkySpec, Smooth, SunSpec, ValueError, clock, numbered,
 };
+use lightmesh::scene::SkyKind;
 
 // The program's own module: it needs nothing else of it.
 #[path = "../../crates/cli/src/budget.rs"]
