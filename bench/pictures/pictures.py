@@ -30,8 +30,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 MODELS = (".obj", ".gltf", ".glb", ".ply", ".stl")
 
-# Times, rates and free memory in messages.
-VARIES = re.compile(r"(, about )?\d+(\.\d+)? ?(ms|s|min|h|GiB free)\b( left)?|\d+\.\d+ per second")
+# Times, rates and free memory in messages; a film says how much is left only if frames take long.
+VARIES = re.compile(r"\d+(\.\d+)? ?(ms|s|min|h|GiB free)\b|\d+\.\d+ per second")
+LEFT = re.compile(r", about [^,\n]+ left")
 
 # What all pictures have.
 QUIET = "--progress none --color never"
@@ -120,7 +121,7 @@ def digests(plan, scene, case):
         # A manifest has the version of the program and checksums of frames, which count themselves.
         written = (path for path in sorted(Path(folder).iterdir()) if path.name != "manifest.json")
         files = {path.name: hashlib.sha256(steady(path)).hexdigest() for path in written}
-        return {"exit": done.returncode, "said": VARIES.sub("…", said), "files": files}
+        return {"exit": done.returncode, "said": VARIES.sub("…", LEFT.sub("", said)), "files": files}
 
 
 def command_of(plan, scene, case, folder):
