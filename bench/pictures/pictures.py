@@ -30,10 +30,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 MODELS = (".obj", ".gltf", ".glb", ".ply", ".stl")
 
-# Times, rates and free memory in messages.
+# Times, rates and free memory in messages; a film says how much is left only if frames take long.
 VARIES = re.compile(r"\d+(\.\d+)? ?(ms|s|min|h|GiB free)\b|\d+\.\d+ per second")
-# What is said of the time that is left, if it is worth a word.
-LEFT = re.compile(r", about [\w ]+ left")
+LEFT = re.compile(r", about [^,\n]+ left")
 
 # What all pictures have.
 QUIET = "--progress none --color never"
