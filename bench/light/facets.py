@@ -2,14 +2,14 @@
 
 import numpy as np
 
-PLACES, DIRECTIONS, LEAST_WIDTH, LEAST_COSINE = 32, 24, 0.002, 1e-3
+PLACES, DIRECTIONS, MIN_WIDTH, MIN_COSINE = 32, 24, 0.002, 1e-3
 
 
 def table():
     """a and b by the root of the cosine, from 0 to 1, and roughness, from 0 to 1."""
     places = np.arange(PLACES) / (PLACES - 1)
-    cosine = np.maximum(places**2, LEAST_COSINE)[:, None, None, None]
-    width = np.maximum(places**2, LEAST_WIDTH)[None, :, None, None]
+    cosine = np.maximum(places**2, MIN_COSINE)[:, None, None, None]
+    width = np.maximum(places**2, MIN_WIDTH)[None, :, None, None]
     u, v = ((np.arange(DIRECTIONS) + 0.5) / DIRECTIONS)[:, None], ((np.arange(DIRECTIONS) + 0.5) / DIRECTIONS)[None]
     sine = np.sqrt(1 - cosine**2)
     length = np.sqrt((width * sine) ** 2 + cosine**2)
@@ -48,7 +48,7 @@ def register(mitsuba, drjit):
             self.base, self.layer = mi.Color3f(*map(float, read("base"))), mi.Color3f(*map(float, read("layer")))
             self.metallic, self.grazing = float(props["metallic"]), float(props["grazing"])
             self.roughness = float(props["roughness"])
-            self.width = max(self.roughness**2, LEAST_WIDTH)
+            self.width = max(self.roughness**2, MIN_WIDTH)
             # The column of this roughness.
             place = self.roughness * (PLACES - 1)
             column = min(int(place), PLACES - 2)
@@ -68,7 +68,7 @@ def register(mitsuba, drjit):
 
         def parts(self, cosine):
             """Diffuse reflectance, f0, f90 and gain."""
-            cosine = dr.maximum(cosine, LEAST_COSINE)
+            cosine = dr.maximum(cosine, MIN_COSINE)
             a, b = self.of_all(cosine)
             again = 1 / (a + b) - 1
             whole = lambda f0, f90: (a * f0 + b * f90) * (1 + again * f0)

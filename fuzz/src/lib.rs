@@ -20,7 +20,7 @@ const LINKS: [&str; 4] = ["link.obj", "link.mtl", "link.png", "link.bin"];
 /// Larger messages are no sentences.
 const LONGEST: usize = 20_000;
 /// Warnings, and one about those that are not shown.
-const MOST_WARNINGS: usize = 101;
+const MAX_WARNINGS: usize = 101;
 
 /// A separate folder for one input. Links in it lead out to another file.
 pub struct Folder(TempDir);
@@ -100,7 +100,7 @@ fn check_views(scene: &Scene) {
 }
 
 fn check(scene: &Scene) {
-    assert!(scene.warnings.len() <= MOST_WARNINGS, "{:?}", scene.warnings);
+    assert!(scene.warnings.len() <= MAX_WARNINGS, "{:?}", scene.warnings);
     scene.warnings.iter().for_each(|warning| check_message(warning));
     check_mesh(&scene.geometry.mesh, scene.geometry.materials.len());
     for texture in scene.geometry.textures.iter() {

@@ -6,12 +6,12 @@ use lightmesh::image::{Frame, Transfer, compare};
 use lightmesh_fuzz::check_message;
 
 /// Larger images take too long.
-const MOST_PIXELS: u64 = 1 << 20;
+const MAX_PIXELS: u64 = 1 << 20;
 /// FLIP takes longer than reading.
 const COMPARED: usize = 1 << 10;
 
 fuzz_target!(|bytes: &[u8]| {
-    if bytes.starts_with(b"\xff\xd8") || stated_pixels(bytes).is_some_and(|pixels| pixels > MOST_PIXELS) {
+    if bytes.starts_with(b"\xff\xd8") || stated_pixels(bytes).is_some_and(|pixels| pixels > MAX_PIXELS) {
         return;
     }
     match Frame::decode(bytes) {

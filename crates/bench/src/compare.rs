@@ -23,7 +23,7 @@ use serde::Serialize;
 use crate::{Results, Row, STAGES, Samples, WHOLE};
 
 /// Minimum relative noise.
-const LEAST_BAND: f64 = 0.05;
+const MIN_BAND: f64 = 0.05;
 /// Half-width of the noise band in spreads of the difference.
 const SPREADS: f64 = 2.0;
 /// Minimum number of samples for a spread.
@@ -31,7 +31,7 @@ const ENOUGH_SAMPLES: usize = 3;
 /// Relative spread assumed for fewer samples.
 const UNKNOWN_SPREAD: f64 = 0.15;
 /// Stages shorter than this, in seconds, are not judged.
-const LEAST_SECONDS: f64 = 1e-4;
+const MIN_SECONDS: f64 = 1e-4;
 
 /// A comparison of two runs of a suite.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -114,7 +114,7 @@ fn compare_rows(old: &Row, new: &Row) -> Vec<StageComparison> {
     let compared = both.filter_map(|(stage, old_samples, new_samples)| {
         let (before, after) = (old_samples.median()?, new_samples.median()?);
         let (ratio, band) = (after / before, band(old_samples, new_samples));
-        let measurable = before.max(after) >= LEAST_SECONDS;
+        let measurable = before.max(after) >= MIN_SECONDS;
         (ratio.is_finite() && before > 0.0).then(|| StageComparison {
             id: old.id.clone(),
             stage: stage.clone(),
@@ -150,7 +150,7 @@ impl Verdict {
 
 /// The relative noise of the ratio of two medians.
 fn band(old: &Samples, new: &Samples) -> f64 {
-    LEAST_BAND.max(SPREADS * spread(old).hypot(spread(new)))
+    MIN_BAND.max(SPREADS * spread(old).hypot(spread(new)))
 }
 
 /// The interquartile range over the median.

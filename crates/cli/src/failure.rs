@@ -147,13 +147,13 @@ fn exit_code_of(error: &Error) -> u8 {
 #[cfg(test)]
 mod tests {
     use lightmesh::render::Setting;
-    use lightmesh_memory::Short;
+    use lightmesh_memory::OverBudget;
 
     use super::*;
 
     #[test]
     fn what_the_machine_cannot_do_is_told_from_bad_input() {
-        let memory = RenderError::Memory { buffer: "masks", short: Short { needed: 2, left: 1, limit: None } };
+        let memory = RenderError::Memory { buffer: "masks", short: OverBudget { needed: 2, left: 1, limit: None } };
         let device = RenderError::Device { device: "cuda".into(), reason: "none".into() };
         let full = RenderError::DeviceMemory { device: "Fake".into(), buffer: "masks", needed: 2, free: Some(1) };
         let fault = RenderError::DeviceFault { device: "Fake".into(), reason: "none".into() };

@@ -75,7 +75,7 @@ fn owned(flags: &[&str]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use lightmesh_memory::Short;
+    use lightmesh_memory::OverBudget;
 
     use super::*;
     use crate::args;
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn a_failure_names_the_flags_that_mend_it() {
-        let memory = RenderError::Memory { buffer: "masks", short: Short { needed: 2, left: 1, limit: None } };
+        let memory = RenderError::Memory { buffer: "masks", short: OverBudget { needed: 2, left: 1, limit: None } };
         assert_eq!(that_mend(&memory.into()), ["--memory-limit", "--size", "--step", "--radius"]);
         let strict = LoadError::Warnings { path: "a.obj".into(), warnings: vec!["odd".into()] };
         assert_eq!(that_mend(&strict.into()), ["--strict"]);

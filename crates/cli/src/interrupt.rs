@@ -15,7 +15,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use lightmesh_files::{Abandoned, abandon, record_written};
+use lightmesh_files::{Aborted, abort, record_written};
 
 use crate::failure::Failure;
 use crate::output;
@@ -99,27 +99,27 @@ pub(crate) fn leave_if_requested() {
 
 /// Removes what is unfinished, says what is written, and exits. Of two threads that call this, one waits for the other to exit.
 fn leave(code: u8) -> ! {
-    let abandoned = abandon();
+    let aborted = abort();
     // If it is being written, there is no picture.
     let remark = REMARK.try_lock().map(|remark| remark.clone()).unwrap_or_default();
-    output::conclude(&if abandoned.written.is_empty() || remark.is_empty() {
-        message(&abandoned)
+    output::conclude(&if aborted.written.is_empty() || remark.is_empty() {
+        message(&aborted)
     } else {
-        format!("{}; {remark}", message(&abandoned))
+        format!("{}; {remark}", message(&aborted))
     });
     exit(code)
 }
 
 /// The same for another reason, which is the message, unless it is known that outputs are there.
 pub(crate) fn end(code: u8, reason: &str) -> ! {
-    match abandon() {
-        abandoned if abandoned == Abandoned::default() => output::conclude(reason),
-        abandoned => output::conclude(&format!("{reason}; {}", message(&abandoned))),
+    match abort() {
+        aborted if aborted == Aborted::default() => output::conclude(reason),
+        aborted => output::conclude(&format!("{reason}; {}", message(&aborted))),
     }
     exit(code)
 }
 
-fn message(Abandoned { written, partial, .. }: &Abandoned) -> String {
+fn message(Aborted { written, partial, .. }: &Aborted) -> String {
     let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
     let whole = match &names[..] {
         [] => "nothing was written".to_owned(),
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn the_message_says_what_is_written() {
-        let mut state = Abandoned::default();
+        let mut state = Aborted::default();
         assert_eq!(message(&state), "interrupted: nothing was written");
         state.written = ["a.png", "a.json"].map(PathBuf::from).into();
         assert_eq!(message(&state), "interrupted: written: a.png, a.json");

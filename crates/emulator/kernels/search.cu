@@ -7,7 +7,7 @@
 
 // What a region is built from.
 struct Asked {
-    unsigned form;
+    unsigned shape;
     // Points with normals, at most 32; none if nothing is cut off.
     unsigned point_count;
     float slack, reach;
@@ -16,7 +16,7 @@ struct Asked {
 };
 
 // The numbers of the forms.
-enum Form { BOX, NEAR, SHAFT };
+enum RegionShape { BOX, NEAR, SHAFT };
 
 struct Search {
     Scene scene;
@@ -27,8 +27,8 @@ struct Search {
 };
 
 // Finds the triangles of a region and writes their indices.
-template <class Form, class Structure>
-DEVICE void search_region(const Search &args, const Structure &structure, const Region<Form> &region, unsigned *list,
+template <class RegionShape, class Structure>
+DEVICE void search_region(const Search &args, const Structure &structure, const Region<RegionShape> &region, unsigned *list,
                           unsigned *memory) {
     const unsigned lane = lane_of_thread();
     auto search = begin_search(structure, region, memory);
@@ -60,9 +60,9 @@ DEVICE void search_regions(const Search &args, const Structure &structure) {
     const TangentPlanes planes = tangent_planes(asked.low, lane < asked.point_count, asked.points[known], asked.normals[known],
                                                 reinterpret_cast<PlanesMemory *>(shared));
     const Bounds origins = {asked.low, asked.high};
-    if (asked.form == BOX)
+    if (asked.shape == BOX)
         search_region(args, structure, region_above(region_within(origins), planes, asked.slack), list, memory);
-    else if (asked.form == NEAR)
+    else if (asked.shape == NEAR)
         search_region(args, structure, region_above(region_near(origins, asked.reach), planes, asked.slack), list, memory);
     else
         search_region(args, structure,

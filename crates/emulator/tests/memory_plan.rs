@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use lightmesh_emulator::{Emulator, Traffic};
 use lightmesh_render::backend::Cuda;
 use lightmesh_render::{
-    Acceleration, Frame, Kept, Lookup, Mode, Observer, PreparedScene, RenderError, Settings, Stage, Step, Unobserved,
+    Acceleration, Cache, Frame, Lookup, Mode, Observer, PreparedScene, RenderError, Settings, Stage, Step, Unobserved,
     render_on, render_on_with,
 };
 use lightmesh_scene::{Geometry, LightKind, Scene, Up};
@@ -252,7 +252,7 @@ fn geometry_is_uploaded_once_and_freed_when_it_is_gone() {
 fn render_twice(scene: &PreparedScene, settings: &Settings, accident: impl Fn(&Emulator)) -> (Frame, Traffic, bool) {
     let emulator = Arc::new(Emulator::new());
     let cuda = Cuda::new(Arc::clone(&emulator));
-    let mut kept = Kept::default();
+    let mut kept = Cache::default();
     let mut first = settings.clone().with_camera(scene.scene.default_camera(Up::Y));
     first.memory_limit = None;
     render_on_with(&cuda, &mut kept, scene, &first, &Unobserved).unwrap();
@@ -319,7 +319,7 @@ fn a_cache_under_a_limit_keeps_what_was_used_last() {
     let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
     let film = |limit: Option<u64>| {
         let cuda = Cuda::new(Arc::new(Emulator::new()));
-        let mut kept = Kept::default();
+        let mut kept = Cache::default();
         let (mut saved, mut most, mut peak, notes) = (0, 0, 0, Notes::default());
         let base = scene.scene.default_camera(Up::Y);
         let (right, _, forward) = base.basis();
@@ -352,7 +352,7 @@ fn a_cache_under_a_limit_keeps_what_was_used_last() {
 fn a_cache_grows_and_forgets_nothing() {
     let scene = PreparedScene::new(&scene(), &Acceleration::Bvh, &Unobserved).unwrap();
     let cuda = Cuda::new(Arc::new(Emulator::new()));
-    let mut kept = Kept::default();
+    let mut kept = Cache::default();
     let mut picture = |size| {
         let settings = settings().with_size(size).with_step(Step::Fixed(0.04));
         let frame = render_on_with(&cuda, &mut kept, &scene, &settings, &Unobserved).unwrap();

@@ -7,7 +7,7 @@
 //! 3. [`publish`] renames the outputs of a run over their targets, all at once. An existing file keeps its permissions.
 //!
 //! An interrupted program or a full disk thus leaves the previous file intact. Temporary files are removed when dropped, by
-//! [`abandon`] if the program ends early, and by the next run in the same directory if it was killed: a lock on each of them tells
+//! [`abort`] if the program ends early, and by the next run in the same directory if it was killed: a lock on each of them tells
 //! those of living runs.
 //!
 //! ```
@@ -23,7 +23,7 @@
 //! ```
 
 mod check;
-mod ending;
+mod cleanup;
 mod output;
 mod publish;
 mod read;
@@ -39,7 +39,7 @@ mod visible;
 mod tests;
 
 pub use check::{check_folder, check_writable};
-pub use ending::{Abandoned, abandon, record_written, stand_by};
+pub use cleanup::{Aborted, abort, publish_on_abort, record_written};
 pub use output::{Output, Ready, WriteError};
 pub use publish::{PublishError, publish, publish_record};
 pub use read::{Portion, ReadError, read, read_inside, read_stream};

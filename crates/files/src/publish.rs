@@ -74,7 +74,7 @@ impl Output {
     }
 }
 
-/// Lets a file appear that a program keeps for itself, such as a record of its outputs: [`abandon`](crate::abandon) does not name it.
+/// Lets a file appear that a program keeps for itself, such as a record of its outputs: [`abort`](crate::abort) does not name it.
 ///
 /// # Errors
 /// [`PublishError`]; also if the target is no regular file.

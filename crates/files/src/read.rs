@@ -8,7 +8,7 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, Read};
 use std::path::Path;
 
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 
 /// Bytes of a stream that are read before more memory is asked for.
 const FIRST: usize = 1 << 16;
@@ -28,7 +28,7 @@ pub enum ReadError {
     Outside,
     /// What is to be read does not fit into memory.
     #[error(transparent)]
-    Memory(#[from] Short),
+    Memory(#[from] OverBudget),
 }
 
 /// How much of a file is read.
@@ -78,7 +78,7 @@ pub fn read_stream(mut source: impl Read, budget: Budget) -> Result<Vec<u8>, Rea
         let needed = (bytes.len() + more) as u64;
         // While the content moves to a larger place, the smaller one is still held.
         budget.check(needed)?;
-        let refused = |_| Short { needed, left: 0, limit: budget.limit() };
+        let refused = |_| OverBudget { needed, left: 0, limit: budget.limit() };
         bytes.try_reserve_exact(more).map_err(refused)?;
         if source.by_ref().take(more as u64).read_to_end(&mut bytes)? < more {
             return Ok(bytes);
@@ -212,7 +212,7 @@ mod tests {
             assert_eq!(read_stream(first.chain(rest), Budget::default()).unwrap(), bytes);
         }
         let endless = read_stream(io::repeat(0), Budget::new(Some(1 << 24)));
-        assert!(matches!(endless, Err(ReadError::Memory(Short { limit: Some(0x100_0000), .. }))), "{endless:?}");
+        assert!(matches!(endless, Err(ReadError::Memory(OverBudget { limit: Some(0x100_0000), .. }))), "{endless:?}");
     }
 
     #[test]
@@ -224,7 +224,7 @@ mod tests {
         let portion = |wanted| read(&path, Portion { wanted, budget: Budget::new(Some(1 << 24)) });
         assert_eq!(portion(4).unwrap(), b"abcd");
         assert_eq!(portion(0).unwrap(), b"");
-        assert!(matches!(portion(u64::MAX), Err(ReadError::Memory(Short { needed: 0x1_0000_0000, .. }))));
-        assert!(matches!(portion(1 << 25), Err(ReadError::Memory(Short { needed: 0x200_0000, .. }))));
+        assert!(matches!(portion(u64::MAX), Err(ReadError::Memory(OverBudget { needed: 0x1_0000_0000, .. }))));
+        assert!(matches!(portion(1 << 25), Err(ReadError::Memory(OverBudget { needed: 0x200_0000, .. }))));
     }
 }

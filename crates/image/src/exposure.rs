@@ -14,7 +14,7 @@ const BELOW_WHITE: f64 = 0.95;
 const BRIGHT: f32 = 0.85;
 const BELOW_BRIGHT: f64 = 0.99;
 /// By how many stops an image is brightened at most for this: what is dark should be so.
-const MOST_BRIGHTENED: f32 = 0.5;
+const MAX_BRIGHTENED: f32 = 0.5;
 /// Steps per stop, so that the result can be typed.
 const STEPS_A_STOP: f32 = 100.0;
 
@@ -53,7 +53,7 @@ impl Frame {
         let place = ((largest.len() - 1) as f64 * BELOW_BRIGHT) as usize;
         let (_, &mut bright, _) = largest.select_nth_unstable_by(place, f32::total_cmp);
         let stops = (BRIGHT / bright.max(f32::MIN_POSITIVE)).log2();
-        (stops.min(MOST_BRIGHTENED) * STEPS_A_STOP).round() / STEPS_A_STOP
+        (stops.min(MAX_BRIGHTENED) * STEPS_A_STOP).round() / STEPS_A_STOP
     }
 }
 

@@ -68,7 +68,7 @@ pub use error::{DecodeError, EncodeError, LoadError, SaveError};
 pub use format::Format;
 pub use frame::{Frame, FrameError, FrameParts, Layers, Window};
 pub use lightmesh_files::{Output, PublishError, Ready, publish};
-pub use matte::{MOST_RANKS, Matte, Rank};
+pub use matte::{MAX_RANKS, Matte, Rank};
 pub use options::{Description, ExrCompression, ExrOptions, ExrParts, ExrSamples, SaveOptions, UnknownWord};
 pub use save::{check_image, check_options, check_size, check_writable};
 pub use transfer::{Transfer, UnknownTransfer};

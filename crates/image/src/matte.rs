@@ -1,7 +1,7 @@
 //! What pixels see, by name: objects or materials.
 
 /// The most ranks of a matte.
-pub const MOST_RANKS: usize = 6;
+pub const MAX_RANKS: usize = 6;
 
 /// Which of some named things, objects or materials, pixels see. Things are numbered from 1; 0 is nothing. All fields are empty if nothing is
 /// known.
@@ -11,7 +11,7 @@ pub struct Matte {
     pub names: Vec<String>,
     /// What the nearest sample of each pixel sees.
     pub nearest: Vec<u32>,
-    /// What the samples of each pixel see, from the largest share to the smallest: at most [`MOST_RANKS`].
+    /// What the samples of each pixel see, from the largest share to the smallest: at most [`MAX_RANKS`].
     pub ranks: Vec<Rank>,
 }
 
@@ -60,8 +60,8 @@ impl Matte {
 
     /// Sorts what a pixel sees: large shares first, equal ones by number.
     pub fn sort(&mut self, pixel: usize) {
-        let mut seen = [(0, 0.0); MOST_RANKS];
-        let seen = &mut seen[..self.ranks.len().min(MOST_RANKS)];
+        let mut seen = [(0, 0.0); MAX_RANKS];
+        let seen = &mut seen[..self.ranks.len().min(MAX_RANKS)];
         for (seen, rank) in seen.iter_mut().zip(&self.ranks) {
             *seen = (rank.number[pixel], rank.share[pixel]);
         }

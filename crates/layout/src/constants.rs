@@ -36,7 +36,7 @@ constants! {
     /// Stands for a light in the random pattern of a pixel's samples.
     PIXEL_PATTERN: u32 = 0x7fff_ffff;
     /// Samples of a pixel at most if any are shaded together.
-    MOST_SHARED: u32 = 32;
+    MAX_SHARED: u32 = 32;
     /// A pixel's samples and its centre lie on one surface.
     PIXEL_SHARED: u32 = 1;
     /// The same, but neighbours differ so much that each sample is shaded by itself.
@@ -87,7 +87,7 @@ constants! {
     /// Directions whose largest component exceeds this value, 2^40, or is below its reciprocal are scaled.
     LARGEST_DIRECTION: f32 = (1u64 << 40) as f32;
     /// Direction components below this share of the largest, 2^-30, count as such a share or as zero.
-    LEAST_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
+    MIN_COMPONENT: f32 = 1.0 / (1u32 << 30) as f32;
     /// Relative margin of tests against the boxes of a BVH, 2^-19; derived in bvh/walk.rs.
     BVH_MARGIN: f32 = 1.0 / (1u32 << 19) as f32;
     /// Relative margin by which boxes of shapes in many places are enlarged, 2^-18; derived in accel/instanced.rs.
@@ -130,20 +130,20 @@ constants! {
     /// The bits of √½, where mantissas that logarithms are computed from start.
     ROOT_OF_HALF_BITS: u32 = 0x3f35_04f3;
     /// If the square of twice its area is below this, a triangle's normal has lost its bits to underflow.
-    LEAST_SQUARE: f32 = 1e-30;
+    MIN_SQUARE: f32 = 1e-30;
     /// If the square of its length is below this, an interpolated normal has cancelled out.
-    LEAST_SMOOTH_SQUARE: f32 = 1e-12;
+    MIN_SMOOTH_SQUARE: f32 = 1e-12;
     /// The code of 0 in an image of normals.
     NORMAL_CODE_ZERO: f32 = 128.0;
     /// By how much that of 1 is larger.
     NORMAL_CODE_ONE: f32 = 127.0;
     /// What surfaces with images of normals mirror goes at least at this cosine from the geometric normal, or half as far from the surface as the
     /// view.
-    LEAST_MIRRORED_COSINE: f32 = 0.01;
+    MIN_MIRRORED_COSINE: f32 = 0.01;
     /// The ellipse in which a cone meets a surface is longer than wide by at most the reciprocal of this cosine.
-    LEAST_FOOTPRINT_COSINE: f32 = 1e-6;
+    MIN_FOOTPRINT_COSINE: f32 = 1e-6;
     /// Lookups along the major axis of a footprint in a texture, at most.
-    MOST_PROBES: u32 = 16;
+    MAX_PROBES: u32 = 16;
     /// Bits of a channel of a texel below the image itself.
     TEXEL_BITS: u32 = 21;
     /// White in such a channel.
@@ -151,13 +151,13 @@ constants! {
     /// Places of the table of what facets reflect, along each axis.
     FACET_PLACES: u32 = 32;
     /// The least width of their lobes: smoother ones are points in single precision.
-    LEAST_FACET_WIDTH: f32 = 0.002;
+    MIN_FACET_WIDTH: f32 = 0.002;
     /// The least cosine at which they are seen.
-    LEAST_VIEW_COSINE: f32 = 1e-3;
+    MIN_VIEW_COSINE: f32 = 1e-3;
     /// The least cosine at which the width of a ray on a light is told,
-    LEAST_SEEN_COSINE: f32 = 0.01;
+    MIN_SEEN_COSINE: f32 = 0.01;
     /// and at which lights that shine evenly become brighter.
-    LEAST_SHINING_COSINE: f32 = 0.1;
+    MIN_SHINING_COSINE: f32 = 0.1;
     /// A light is in front of a surface as far away, by rounding and by a hair: lamps lie in ceilings.
     SAME_DISTANCE: f32 = 1.0 + 1.0 / 16384.0;
     /// Up to this roughness, mirror rays show all that facets reflect,
@@ -175,11 +175,11 @@ constants! {
     /// The angle of the cone that all mirror rays of facets stand for, in widths of their lobes: most of what they reflect comes from there.
     WIDTH_OF_LOBE: f32 = 3.0;
     /// A mirror ray of facets that shows all of a pixel is as many as that, in different directions, if the lobe is wide,
-    MOST_DIRECTIONS: u32 = 8;
+    MAX_DIRECTIONS: u32 = 8;
     /// as from this width on, the square of the roughness.
     WIDE_LOBE: f32 = 0.01;
     /// Cones of mirror rays are as narrow as if a pixel had that many at most.
-    MOST_CONES: f32 = 64.0;
+    MAX_CONES: f32 = 64.0;
     /// The bit from which on a ray's number among them is in a list, above its sample.
     DIRECTION_SHIFT: u32 = 17;
     /// Stands for a light in the random pattern of the directions of a pixel's mirror rays.
@@ -195,7 +195,7 @@ constants! {
     /// Of blue.
     LUMINANCE_BLUE: f32 = 0.0722;
     /// Vertex normals farther from the triangle's than this cosine says, 45°, do not tell a curved surface.
-    LEAST_CURVED_COSINE: f32 = 0.707;
+    MIN_CURVED_COSINE: f32 = 0.707;
     /// How far the curved surface is from the triangle, as a share of the way to the planes that touch it at the corners (Boubekeur
     /// and Alexa: *Phong Tessellation*, SIGGRAPH Asia 2008).
     SHAPE_FACTOR: f32 = 0.75;
@@ -219,9 +219,9 @@ constants! {
     /// 2^64 over the golden ratio: multiplication by it spreads consecutive numbers far apart (Fibonacci hashing, SplitMix64).
     GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
     /// The reach of the template with the largest radius, in steps; added to offsets before they are packed.
-    MOST_REACH: i32 = 16;
+    MAX_REACH: i32 = 16;
     /// Lines along x of that template.
-    TEMPLATE_LINES: i32 = (2 * MOST_REACH) * (2 * MOST_REACH);
+    TEMPLATE_LINES: i32 = (2 * MAX_REACH) * (2 * MAX_REACH);
 
     // Rays.
 
@@ -250,18 +250,18 @@ constants! {
     /// exp(−x) is 0 for larger x.
     LARGEST_EXPONENT: f32 = 87.0;
     /// A ray goes through so many surfaces.
-    MOST_THROUGHS: u32 = 64;
+    MAX_THROUGHS: u32 = 64;
     /// Where surfaces let rays through, a ray always goes on from this depth if at least this share of what it sees reaches the pixel; others are
     /// thinned.
-    LEAST_THICK_DEEP: f32 = 1.0 / 256.0;
+    MIN_THICK_DEEP: f32 = 1.0 / 256.0;
     /// The same for rays that met fewer surfaces: what a single thing of glass shows is smooth, also of bright lamps.
-    LEAST_THICK: f32 = 1.0 / 4096.0;
+    MIN_THICK: f32 = 1.0 / 4096.0;
     /// How many surfaces a ray met that counts as deep.
     DEEP: u32 = 6;
     /// Shares are counted in parts of that: so many bits.
     THIN_BITS: u32 = 16;
     /// Less is nothing: one of these parts.
-    LEAST_THIN: f32 = 1.0 / 16_777_216.0;
+    MIN_THIN: f32 = 1.0 / 16_777_216.0;
     /// By how much the offset of thinning differs between neighbours in a row, as a share of 2³²: 1/ρ, with ρ³ = ρ + 1.
     THIN_ACROSS: u32 = 0xc13f_a9a9;
     /// In a column: 1/ρ².
@@ -269,14 +269,14 @@ constants! {
     /// From depth to depth: the golden ratio.
     THIN_DEEPER: u32 = 0x9e37_79b9;
     /// Of surfaces without diffuse reflection it is asked what panes leave of a light if its highlight is at least that much of a pixel.
-    LEAST_SHOWN: f32 = 1.0 / 262_144.0;
+    MIN_SHOWN: f32 = 1.0 / 262_144.0;
     /// So many hits of a shadow ray are found at once.
     HITS_AT_ONCE: u32 = 16;
     /// The least cosine at which a shadow ray counts as meeting a pane.
-    LEAST_STEEPNESS: f32 = 1.0 / 64.0;
+    MIN_STEEPNESS: f32 = 1.0 / 64.0;
     /// Where all surfaces are opaque, a ray goes on at a surface, mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
     /// no code of an image.
-    LEAST_ONWARD: f32 = 1.0 / 4096.0;
+    MIN_ONWARD: f32 = 1.0 / 4096.0;
     /// Surface points of which a small share reaches the pixel follow fewer samples of lights through panes: levels of that.
     FILTER_LEVELS: u32 = 3;
     /// Each level takes this part of the samples of the one before, where at most this part of its share reaches the pixel.
@@ -284,11 +284,11 @@ constants! {
     /// So many of its bits.
     LEVEL_SHIFT: u32 = 2;
     /// More samples are not followed at levels beyond the first: one set of rows has them.
-    MOST_OF_LEVEL: u32 = 64;
+    MAX_OF_LEVEL: u32 = 64;
     /// Surfaces that mirror this share at most are faint mirrors: half of a pixel's samples show what is in them.
     FAINT_MIRROR: f32 = 1.0 / 8.0;
     /// Mirror rays of a pixel that meet one surface are one if at most this share of what it mirrors reaches the pixel.
-    MOST_MERGED: f32 = 1.0 / 32.0;
+    MAX_MERGED: f32 = 1.0 / 32.0;
 
     // Lights.
 
@@ -343,19 +343,19 @@ constants! {
     // Rows of samples.
 
     /// Maximum number of rows of samples that are tested at once.
-    MOST_ROWS: u32 = 20;
+    MAX_ROWS: u32 = 20;
     /// Maximum number of words of their bits.
-    MOST_WORDS: u32 = 10;
+    MAX_WORDS: u32 = 10;
     /// Maximum number of samples in a row, so that its bits are an exact difference of powers of two in 32 bits.
-    MOST_OF_ROW: u32 = 30;
+    MAX_OF_ROW: u32 = 30;
     /// Edge functions below this in size, along a row, count as constant.
-    LEAST_SLOPE: f32 = 1e-25;
+    MIN_SLOPE: f32 = 1e-25;
     /// Far outside of every emitter: the bound of a row without an edge on that side.
-    BEYOND: f32 = 1e30;
+    UNBOUNDED: f32 = 1e30;
     /// Number of places by which samples are shifted along their rows: sums of a few shifts are exact.
-    SHIFTS: f32 = (1u32 << 16) as f32;
+    SHIFT_STEPS: f32 = (1u32 << 16) as f32;
     /// By how much the boxes of surface points and emitters are enlarged before bounds are derived from them.
-    GROWN: f32 = 1.0 + 1e-5;
+    ENLARGEMENT: f32 = 1.0 + 1e-5;
     /// Least width in pixels of the cells by which surface points are grouped.
     CELL_PIXELS: f32 = 32.0;
     /// The exponent's last bit in single precision.
@@ -369,7 +369,7 @@ constants! {
     /// Words that describe where such candidates are searched for.
     SEARCHED_WORDS: u32 = 64;
     /// Words of the rows of samples in shared memory, of one shape: four a row, and the end of each word's rows.
-    ROW_TABLE_WORDS: u32 = 4 * MOST_ROWS + 12;
+    ROW_TABLE_WORDS: u32 = 4 * MAX_ROWS + 12;
     /// The margin of searches for what may hide a light, 2^-16 of the size of the searched space.
     SHADOW_MARGIN: f32 = 1.0 / (1u32 << 16) as f32;
 
@@ -405,9 +405,9 @@ constants! {
     /// The same as `STACK_OF_ROUNDS` for a search that enters instances.
     STACK_OF_INSTANCES: u32 = 128;
     /// Number of instances that a node's leaves hold at most.
-    MOST_HELD: u32 = 24;
+    MAX_HELD: u32 = 24;
     /// Maximum number of boxes from which the searches of a tile's items start.
-    MOST_STARTS: u32 = 48;
+    MAX_SEARCH_ROOTS: u32 = 48;
     /// Marks a box that is a leaf.
     LEAF_START: u32 = 1 << 31;
     /// The number of such boxes that means "start at the root".
@@ -435,7 +435,7 @@ constants! {
     /// Warps of a block that marks light points or interpolates, an item each.
     ITEM_WARPS: u32 = 4;
     /// Maximum number of lights without an area that are interpolated at once.
-    MOST_LIGHTS: u32 = 3;
+    MAX_LIGHTS: u32 = 3;
 
     // Gathered light.
 
@@ -450,9 +450,9 @@ constants! {
     /// Added to a level so that it is positive, with seven bits.
     LEVEL_BIAS: i32 = 64;
     /// The level of all widths that are smaller. Levels of cells differ from those of widths by a few.
-    LEAST_LEVEL: i32 = -60;
+    MIN_LEVEL: i32 = -60;
     /// The level of all widths that are larger.
-    MOST_LEVEL: i32 = 58;
+    MAX_LEVEL: i32 = 58;
     /// Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
     SURFACE_KINDS: u32 = 12;
     /// How far sites move away from edges, in cells.
@@ -476,17 +476,17 @@ constants! {
     SITE_COSINE: f32 = 0.75;
     /// Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
     /// sum.
-    LEAST_SPREAD: f32 = 0.02;
+    MIN_SPREAD: f32 = 0.02;
     /// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
     SITE_RAISED: f32 = 0.15;
     /// They rise no farther than this share of the way to what is above.
     SITE_STEP: f32 = 0.5;
     /// They rise no more slowly than by this cosine, unless something is in the way.
-    LEAST_RISE: f32 = 0.3;
+    MIN_RISE: f32 = 0.3;
     /// Bins of directions along each side of the octahedron's square.
     BINS_PER_SIDE: u32 = 8;
     /// What tilts a surface changes light by the slope of the cosine, which has no bound at the horizon: smaller cosines count as this.
-    LEAST_TILT_COSINE: f32 = 0.2;
+    MIN_TILT_COSINE: f32 = 0.2;
     /// Bins of all directions.
     BINS: u32 = BINS_PER_SIDE * BINS_PER_SIDE;
     /// By how many levels coarse cells are coarser than fine ones: they are four times as large.

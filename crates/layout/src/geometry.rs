@@ -136,7 +136,7 @@ records! {
     }
 
     /// The sphere of interest around the triangles: rays that start far away are moved to it.
-    Approach {
+    RayClamp {
         /// Centre of the box around the triangles.
         center: Vec3,
         /// Half its longest edge.
@@ -152,7 +152,7 @@ records! {
         /// Where they are cut out.
         coverage: Coverage,
         /// The sphere around its triangles.
-        approach: Approach,
+        ray_clamp: RayClamp,
         /// Number of nodes; 0 if there are no triangles.
         node_count: u32,
         /// Number of levels.
@@ -170,7 +170,7 @@ records! {
         /// By number, in the order of their triangles.
         instances: In<Instanced>,
         /// The sphere around all.
-        approach: Approach,
+        ray_clamp: RayClamp,
         /// Number of nodes; 0 if there are no triangles.
         node_count: u32,
         /// Number of levels, of the scene's tree and the deepest shape's together.
@@ -196,7 +196,7 @@ records! {
         /// Number of cells along each axis.
         dims: [u32; 3],
         /// The sphere around its triangles.
-        approach: Approach,
+        ray_clamp: RayClamp,
         /// Entries of `triangles`.
         triangle_count: u32,
         /// The margin by which cells were enlarged when triangles were sorted into them.
@@ -210,7 +210,7 @@ records! {
         /// Where they are cut out.
         coverage: Coverage,
         /// The sphere around them.
-        approach: Approach,
+        ray_clamp: RayClamp,
         /// Their number.
         count: u32,
         /// Padding to a multiple of eight bytes.

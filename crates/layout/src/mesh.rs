@@ -31,7 +31,7 @@ records! {
         number: [u32; 3],
         /// Lines of the template that have points.
         lines: u32,
-        /// Offset of each template point from the cell: x, y and z, each plus [`MOST_REACH`](crate::constants::MOST_REACH), one
+        /// Offset of each template point from the cell: x, y and z, each plus [`MAX_REACH`](crate::constants::MAX_REACH), one
         /// byte each. For lanes that take one point each; a warp that takes points one by one uses the rows in constant memory.
         offsets: In<u32>,
         /// The template's rows, packed: first bit, and number of points in the upper half. For lanes that take one row each.
@@ -74,7 +74,7 @@ records! {
     }
 
     /// The visibility of one light at the light points.
-    LitBy {
+    VisibilityOfLight {
         /// Lit or not, one word per slot of the table; null for an area light.
         bits: Out<u64>,
         /// Rays that reached an area light, by rank; null for a light without an area.

@@ -1,7 +1,7 @@
 //! The scene in a device's memory.
 
 use crate::In;
-use crate::constants::{MOST_ROWS, MOST_WORDS};
+use crate::constants::{MAX_ROWS, MAX_WORDS};
 use crate::geometry::{BruteForce, Bvh, Coverage, Grid, InstancedBvh, Triangles, Vec3};
 use crate::record::records;
 
@@ -283,23 +283,23 @@ records! {
     /// Samples of an emitter in rows, all or some of them. Entries of arrays are by row unless stated.
     SampleRows {
         /// Position across the emitter, in [-1, 1].
-        y: [f32; MOST_ROWS as usize],
+        y: [f32; MAX_ROWS as usize],
         /// Samples per unit of length along the row.
-        density: [f32; MOST_ROWS as usize],
+        density: [f32; MAX_ROWS as usize],
         /// Half the number of samples.
-        half: [f32; MOST_ROWS as usize],
+        half: [f32; MAX_ROWS as usize],
         /// By how much of their distance samples are shifted, in addition to the surface point's own shift; in [0, 1).
-        shift: [f32; MOST_ROWS as usize],
+        shift: [f32; MAX_ROWS as usize],
         /// Number of samples.
-        count: [u32; MOST_ROWS as usize],
+        count: [u32; MAX_ROWS as usize],
         /// Bit of the first sample in its word.
-        place: [u32; MOST_ROWS as usize],
+        place: [u32; MAX_ROWS as usize],
         /// The row of the emitter that the samples belong to: two lines of a rectangle share one.
-        line: [u32; MOST_ROWS as usize],
+        line: [u32; MAX_ROWS as usize],
         /// The end of each word's rows, by word.
-        ends: [u32; MOST_WORDS as usize],
+        ends: [u32; MAX_WORDS as usize],
         /// All bits, by word.
-        full: [u32; MOST_WORDS as usize],
+        full: [u32; MAX_WORDS as usize],
         /// Number of rows.
         rows: u32,
         /// Number of words.
@@ -308,9 +308,9 @@ records! {
         lines: u32,
         /// Number of rows of the whole emitter that have a sample too many; only a rectangle's.
         surplus: u32,
-        /// The line that enters the rectangle within its length, or MOST_ROWS.
+        /// The line that enters the rectangle within its length, or MAX_ROWS.
         entering: u32,
-        /// The line that leaves it, or MOST_ROWS.
+        /// The line that leaves it, or MAX_ROWS.
         leaving: u32,
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::constants::FIRST_TARGETS;
 use crate::geometry::{Cone, Hit, ListedRay, Rays, Tally, Triangles, Vec3};
-use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, LitBy, UsedPoints};
+use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, UsedPoints, VisibilityOfLight};
 use crate::record::records;
 use crate::scene::{SampleRows, Sampling, Scene};
 use crate::{In, Out};
@@ -67,7 +67,7 @@ records! {
         items: In<u64>,
         /// The boxes around the surface points of each tile.
         tiles: In<TileBox>,
-        /// By tile, then light of the group, MOST_STARTS + 1 words each: the number of boxes from which searches start, then these; see
+        /// By tile, then light of the group, MAX_SEARCH_ROOTS + 1 words each: the number of boxes from which searches start, then these; see
         /// `accel/search.cuh`.
         starts: Out<u32>,
         /// Number of items of this launch that are taken.
@@ -456,7 +456,7 @@ records! {
         /// The used light points.
         points: UsedPoints,
         /// The results.
-        lit: LitBy,
+        lit: VisibilityOfLight,
         /// How area lights are sampled.
         sampling: Sampling,
         /// Counts overruns.
@@ -489,7 +489,7 @@ records! {
         /// The cached values for the light.
         kept: KeptBy,
         /// The visibility of the light at the points.
-        lit: LitBy,
+        lit: VisibilityOfLight,
         /// The points whose value is unknown, by slot of the image's table.
         unknown: Out<u64>,
         /// The table that became too small.
@@ -525,7 +525,7 @@ records! {
         /// The slot of each brick of the window around each item's cell that has used points.
         slots: In<u32>,
         /// The visibility at these points, by light.
-        lit: In<LitBy>,
+        lit: In<VisibilityOfLight>,
         /// Share of each light by light, then ray; negative if the fallback must compute it.
         share: Out<f32>,
         /// Number of light points used, by ray.

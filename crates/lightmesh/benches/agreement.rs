@@ -12,7 +12,7 @@ use lightmesh::render::backend::{Backend, Cpu, Cuda, Wave};
 use lightmesh::render::cuda::{Driver, open_cuda};
 use lightmesh::render::light_mesh::{Lattice, LightMesh, Template};
 use lightmesh::render::{
-    Job, LightGroup, PreparedScene, RenderError, Sampling, ShortTests, Unobserved, View, render_on,
+    LightGroup, PreparedScene, RenderContext, RenderError, Sampling, ShortTests, Unobserved, View, render_on,
 };
 use lightmesh::scene::Weight;
 use lightmesh::{Acceleration, Frame, Mode, Scene, Settings, Step, Transfer};
@@ -123,8 +123,8 @@ fn stages(
     let camera = case.scene.cameras.first().cloned().unwrap_or_else(|| case.scene.default_camera(Default::default()));
     let view = View::new(&camera, [size, size]);
     let sampling = Sampling { samples: 4, seed: 0, spread: false };
-    let job = |short_tests| Job::new(&Unobserved, sampling).with_short_tests(short_tests);
-    let (by_cell, plain) = (job(ShortTests::Cells), job(ShortTests::Plain));
+    let context = |short_tests| RenderContext::new(&Unobserved, sampling).with_short_tests(short_tests);
+    let (by_cell, plain) = (context(ShortTests::Cells), context(ShortTests::Plain));
     let rays = Cpu.camera_rays(&view, 0..size, 0)?;
     let hits = Cpu.primary_rays(&by_cell, scene, &rays)?;
     let device_rays = cuda.camera_rays(&view, 0..size, 0)?;
@@ -147,15 +147,15 @@ fn stages(
             radius: radius * case.step,
             weight: Weight::Smooth,
         };
-        let wave = Wave { job: &by_cell, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
+        let wave = Wave { context: &by_cell, scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = Cpu.cells(&wave, &mesh)?;
         let masks = Cpu.short_tests(&wave, &cells, &mesh)?;
         let mut expected = vec![Vec::new(); hits.len()];
         for (slot, &ray) in cells.members().iter().enumerate() {
             expected[rays.pixels[ray as usize] as usize] = masks.mask(slot).to_vec();
         }
-        let on_device = |job| Wave {
-            job,
+        let on_device = |context| Wave {
+            context,
             scene: &device_scene,
             rays: &device_rays,
             hits: &device_hits,
@@ -163,7 +163,7 @@ fn stages(
             parts: 1,
         };
         let device_cells = cuda.cells(&on_device(&by_cell), &mesh)?;
-        let masks_of = |job| cuda.short_tests(&on_device(job), &device_cells, &mesh)?.read(&device_cells);
+        let masks_of = |context| cuda.short_tests(&on_device(context), &device_cells, &mesh)?.read(&device_cells);
         let (device, oracle) = (masks_of(&by_cell)?, masks_of(&plain)?);
         let points = mesh.template.len() as u64 * device.len() as u64;
         let differing =

@@ -14,7 +14,7 @@ pub struct Budget {
 /// An allocation that would exceed the budget.
 #[derive(Clone, Copy, Debug, thiserror::Error, PartialEq, Eq)]
 #[error("{} are needed, but only {} are left{}", Bytes(*needed), Bytes(*left), self.of())]
-pub struct Short {
+pub struct OverBudget {
     /// Bytes to allocate.
     pub needed: u64,
     /// Bytes that may still be allocated.
@@ -23,7 +23,7 @@ pub struct Short {
     pub limit: Option<u64>,
 }
 
-impl Short {
+impl OverBudget {
     fn of(&self) -> String {
         self.limit.map_or_else(String::new, |limit| format!(" of {}", Bytes(limit)))
     }
@@ -59,13 +59,13 @@ impl Budget {
     /// Whether `needed` bytes may be allocated; to be called before they are.
     ///
     /// # Errors
-    /// [`Short`] if they exceed what is left.
-    pub fn check(&self, needed: u64) -> Result<(), Short> {
+    /// [`OverBudget`] if they exceed what is left.
+    pub fn check(&self, needed: u64) -> Result<(), OverBudget> {
         if needed < Budget::SMALL {
             return Ok(());
         }
         match self.left() {
-            Some(left) if needed > left => Err(Short { needed, left, limit: self.limit }),
+            Some(left) if needed > left => Err(OverBudget { needed, left, limit: self.limit }),
             _ => Ok(()),
         }
     }
@@ -81,9 +81,9 @@ mod tests {
         assert_eq!(budget.check(2 << 20), Ok(()));
         let short = budget.check(1 << 30).unwrap_err();
         assert!((short.left < 1 << 30) && short.needed == 1 << 30 && short.limit == Some(1 << 30), "{short:?}");
-        let short = Short { needed: 3 << 30, left: 1 << 19, limit: Some(1 << 30) };
+        let short = OverBudget { needed: 3 << 30, left: 1 << 19, limit: Some(1 << 30) };
         assert_eq!(short.to_string(), "3.0 GiB are needed, but only 512 KiB are left of 1.0 GiB");
-        let short = Short { limit: None, ..short };
+        let short = OverBudget { limit: None, ..short };
         assert_eq!(short.to_string(), "3.0 GiB are needed, but only 512 KiB are left");
     }
 

@@ -13,7 +13,7 @@ mod counting;
 mod size;
 mod system;
 
-pub use budget::{Budget, Short};
+pub use budget::{Budget, OverBudget};
 pub use counting::{Counting, Refused, ceiling, held, set_ceiling};
 pub use size::Bytes;
 pub use system::{available, peak, resident};

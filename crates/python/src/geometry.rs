@@ -12,7 +12,7 @@ use crate::material::Material;
 use crate::texture::Album;
 
 /// If copies of objects in many places have more triangles in all, they are stored once: rays take longer then.
-const MOST_COPIED: usize = 1 << 20;
+const MAX_COPIED: usize = 1 << 20;
 
 /// Triangles with materials, in one place or many.
 #[pyclass(frozen, from_py_object, module = "lightmesh")]
@@ -177,7 +177,7 @@ pub(crate) fn scene(name: &str, objects: &[Geometry], instancing: Instancing) ->
     let many = objects.iter().filter(|object| object.places.len() > 1);
     let copied: usize = many.map(Geometry::triangle_count).sum();
     let is_stored_once = match instancing {
-        Instancing::Auto => copied > MOST_COPIED,
+        Instancing::Auto => copied > MAX_COPIED,
         Instancing::Always => true,
         Instancing::Never => false,
     };

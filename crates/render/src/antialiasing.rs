@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x8, u32x8};
-use lightmesh_layout::constants::{FILTER_PLACES, FILTER_STEPS, MARGIN_ROWS, MOST_SHARED, PIXEL_PATTERN};
+use lightmesh_layout::constants::{FILTER_PLACES, FILTER_STEPS, MARGIN_ROWS, MAX_SHARED, PIXEL_PATTERN};
 use lightmesh_trace::accel::Ray;
 use lightmesh_trace::simd::{LANES, dispatch};
 
@@ -56,7 +56,7 @@ impl Antialiasing {
         let noise = (FULL_SAMPLES / light_samples.max(1) as f32).sqrt().max(1.0);
         Antialiasing {
             samples,
-            apart: samples > MOST_SHARED,
+            apart: samples > MAX_SHARED,
             mirrors: false,
             keeps: false,
             contrast: CONTRAST * noise,

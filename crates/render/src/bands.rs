@@ -1,6 +1,6 @@
 //! How many rows of an image fit into the host's memory at once.
 
-use lightmesh_memory::Short;
+use lightmesh_memory::OverBudget;
 use lightmesh_trace::accel::{Hit, Ray};
 
 use crate::error::RenderError;
@@ -14,11 +14,11 @@ pub const RESERVE: u64 = 32 << 20;
 /// Parts of an image whose finished rows may be asked for at any time.
 const PARTS: u32 = 32;
 /// Fewer rows in a part would mostly repeat those around it.
-const LEAST_ROWS: u32 = 8;
+const MIN_ROWS: u32 = 8;
 
 /// Most rows to render at once if the finished ones may be asked for at any time.
 pub fn rows_in_parts(height: u32) -> u32 {
-    height.div_ceil(PARTS).max(LEAST_ROWS)
+    height.div_ceil(PARTS).max(MIN_ROWS)
 }
 
 /// Rejects an image that does not fit into the host's memory, before any of it is allocated.
@@ -43,7 +43,7 @@ pub fn rows_on_host(plan: &Plan) -> Result<u32, RenderError> {
 
 fn fits(plan: &Plan, buffer: &'static str, needed: u64) -> Result<(), RenderError> {
     match plan.left.filter(|left| needed > *left) {
-        Some(left) => Err(RenderError::Memory { buffer, short: Short { needed, left, limit: plan.memory_limit } }),
+        Some(left) => Err(RenderError::Memory { buffer, short: OverBudget { needed, left, limit: plan.memory_limit } }),
         None => Ok(()),
     }
 }
@@ -51,5 +51,5 @@ fn fits(plan: &Plan, buffer: &'static str, needed: u64) -> Result<(), RenderErro
 fn bytes_per_ray(plan: &Plan) -> u64 {
     // A ray with pixel, weight and cone, twice (mirrors make the next list from this one), and its hit and radiance.
     let ray = 2 * (size_of::<Ray>() as u64 + 4 + 12 + size_of::<Cone>() as u64) + size_of::<Hit>() as u64 + 12;
-    ray + plan.footprint.host
+    ray + plan.bytes_per_ray.host
 }

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use lightmesh_kernels::DeviceError;
-use lightmesh_memory::Short;
+use lightmesh_memory::OverBudget;
 use lightmesh_scene::GeometryError;
 use lightmesh_trace::accel::{GridError, GridFileError};
 
@@ -79,7 +79,7 @@ pub enum RenderError {
         /// What is counted.
         buffer: &'static str,
         /// Bytes needed and left.
-        short: Short,
+        short: OverBudget,
     },
     /// The geometry is too large for the host's memory.
     #[error(
@@ -89,7 +89,7 @@ pub enum RenderError {
         /// Number of triangles.
         triangles: usize,
         /// Bytes needed and left.
-        short: Short,
+        short: OverBudget,
     },
     /// The smaller levels of a texture do not fit into the host's memory.
     #[error(
@@ -102,7 +102,7 @@ pub enum RenderError {
         /// Its width and height in texels.
         size: [u32; 2],
         /// Bytes needed and left.
-        short: Short,
+        short: OverBudget,
     },
     /// The device does not exist or cannot be used.
     #[error("device {device} cannot be used: {reason}")]

@@ -35,7 +35,7 @@ DEVICE Gradients gradients_of(const Corners &corners) {
     const Vec3 ab = corners.b - corners.a, ac = corners.c - corners.a;
     const Vec3 normal = cross(ab, ac);
     const float square = length_squared(normal);
-    return Gradients{cross(ac, normal) / square, cross(normal, ab) / square, normal / sqrtf(square), square > LEAST_SQUARE};
+    return Gradients{cross(ac, normal) / square, cross(normal, ab) / square, normal / sqrtf(square), square > MIN_SQUARE};
 }
 
 // The axes of a footprint in texture coordinates: conjugate diameters of an ellipse.
@@ -63,9 +63,9 @@ DEVICE Axes footprint_axes(Vec3 direction, float width, const Corners &corners, 
     const Vec3 slope = direction - cosine * normal;
     const float square = length_squared(slope);
     const Vec3 edge = corners.b - corners.a;
-    const Vec3 unit = square > LEAST_SMOOTH_SQUARE ? slope / sqrtf(square) : edge / length(edge);
+    const Vec3 unit = square > MIN_SMOOTH_SQUARE ? slope / sqrtf(square) : edge / length(edge);
     const Vec3 across = width * cross(normal, unit);
-    const Vec3 along = (width / larger(fabsf(cosine), LEAST_FOOTPRINT_COSINE)) * unit;
+    const Vec3 along = (width / larger(fabsf(cosine), MIN_FOOTPRINT_COSINE)) * unit;
 
     // 2. In texture coordinates.
     const Axes axes = {uv_change(gradients, along, a, b, c), uv_change(gradients, across, a, b, c)};

@@ -18,7 +18,7 @@
 //! Limitations: the ellipse is that of the plane of the hit triangle, however small that is, and cones stay round.
 
 use glam::{Vec2, Vec3};
-use lightmesh_layout::constants::{LEAST_FOOTPRINT_COSINE, LEAST_SMOOTH_SQUARE, LEAST_SQUARE};
+use lightmesh_layout::constants::{MIN_FOOTPRINT_COSINE, MIN_SMOOTH_SQUARE, MIN_SQUARE};
 use lightmesh_scene::Mesh;
 use lightmesh_trace::accel::{Hit, Ray};
 
@@ -77,7 +77,7 @@ impl Gradients {
         let (ab, ac) = (b - a, c - a);
         let normal = ab.cross(ac);
         let square = normal.length_squared();
-        (square > LEAST_SQUARE).then(|| Gradients {
+        (square > MIN_SQUARE).then(|| Gradients {
             u: ac.cross(normal) / square,
             v: normal.cross(ab) / square,
             normal: normal / square.sqrt(),
@@ -97,14 +97,14 @@ pub fn axes(direction: Vec3, width: f32, corners: [Vec3; 3], uvs: [Vec2; 3]) -> 
     let along = direction - cosine * normal;
     let square = along.length_squared();
     // Seen from straight above it is a circle, which has no axes of its own.
-    let along = if square > LEAST_SMOOTH_SQUARE {
+    let along = if square > MIN_SMOOTH_SQUARE {
         along / square.sqrt()
     } else {
         let edge = corners[1] - corners[0];
         edge / edge.length()
     };
     let across = width * normal.cross(along);
-    let along = (width / cosine.abs().max(LEAST_FOOTPRINT_COSINE)) * along;
+    let along = (width / cosine.abs().max(MIN_FOOTPRINT_COSINE)) * along;
 
     // 2. In texture coordinates.
     let change = |step: Vec3| {

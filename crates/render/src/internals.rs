@@ -17,10 +17,10 @@ pub mod bands {
 
 pub mod cache {
     pub use crate::cache::Allowance;
+    pub use crate::cache::column_key::ColumnKey;
     pub use crate::cache::content::{Content, Places, SavedGathered, Section};
     pub use crate::cache::file::{HEADER, MAGIC, TRAILER, decode, load, write};
-    pub use crate::cache::noticed::meets_between;
-    pub use crate::cache::seen::Seen;
+    pub use crate::cache::invalidation::meets_between;
     pub use crate::cache::stored::{Stored, StoredAnswers, StoredColumn, bytes_of_rows};
 }
 
@@ -64,18 +64,18 @@ pub mod passes {
     use lightmesh_scene::Bounds;
 
     use crate::backend::Cpu;
-    use crate::backend::run::Run;
+    use crate::backend::stage_runner::StageRunner;
     use crate::data::picture::Picture;
     use crate::data::visibility::Visibility;
     use crate::error::RenderError;
-    use crate::job::Job;
     use crate::observer::Unobserved;
     use crate::passes::{Baking, Passes};
-    use crate::plan::{Footprint, Plan};
+    use crate::plan::{BytesPerRay, Plan};
     use crate::prepared::PreparedScene;
     use crate::probes::GivenPoints;
+    use crate::render_context::RenderContext;
     use crate::settings::Settings;
-    use crate::techniques::{Request, Technique};
+    use crate::techniques::{Technique, VisibilityQuery};
     use crate::view::View;
 
     /// A technique for surface points within bounds, and the scene that it is for.
@@ -94,13 +94,13 @@ pub mod passes {
         ) -> Result<Chosen<'a>, RenderError> {
             let view = View::new(&scene.scene.cameras[0], settings.size);
             let technique =
-                Technique::resolve(&Request { scene, settings, view: &view, observer: &Unobserved, bounds })?;
+                Technique::resolve(&VisibilityQuery { scene, settings, view: &view, observer: &Unobserved, bounds })?;
             Ok(Chosen { technique, scene, view })
         }
 
         /// Bytes that it needs per ray for `lights` lights at once.
-        pub fn footprint(&self, lights: u64) -> Footprint {
-            self.technique.footprint(lights)
+        pub fn bytes_per_ray(&self, lights: u64) -> BytesPerRay {
+            self.technique.bytes_per_ray(lights)
         }
 
         /// Number of lights in a group.
@@ -109,24 +109,29 @@ pub mod passes {
         }
 
         /// The whole picture as it is planned, on the CPU, and how many rows were rendered at once.
-        pub fn picture(&self, job: &Job, plan: &Plan) -> Result<(Picture, u32), RenderError> {
+        pub fn picture(&self, context: &RenderContext, plan: &Plan) -> Result<(Picture, u32), RenderError> {
             let Chosen { technique, scene, view } = self;
             let mut picture = Picture::planned(plan, [0..plan.size[1], 0..plan.size[1]]);
-            let run = Run::new(&Cpu, job, None);
-            let rows = Passes { run, scene, see_through: None, technique, view, plan }.render(&mut picture)?;
+            let runner = StageRunner::new(&Cpu, context, None);
+            let rows = Passes { runner, scene, see_through: None, technique, view, plan }.render(&mut picture)?;
             Ok((picture, rows))
         }
 
         /// What given points see of lights, on the CPU, and how many rows of them were processed at once.
-        pub fn baked(&self, job: &Job, plan: &Plan, points: &GivenPoints) -> Result<(Visibility, u32), RenderError> {
+        pub fn baked(
+            &self,
+            context: &RenderContext,
+            plan: &Plan,
+            points: &GivenPoints,
+        ) -> Result<(Visibility, u32), RenderError> {
             let Chosen { technique, scene, .. } = self;
-            Baking { run: Run::new(&Cpu, job, None), scene, technique, plan }.bake(points)
+            Baking { runner: StageRunner::new(&Cpu, context, None), scene, technique, plan }.bake(points)
         }
     }
 }
 
 pub mod prepared {
-    pub use crate::prepared::{BYTES_TO_BUILD, middle_and_reach};
+    pub use crate::prepared::{BYTES_TO_BUILD, center_and_sun_distance};
 }
 
 pub mod probes {
@@ -151,10 +156,10 @@ pub mod shading {
 pub mod shadow {
     pub use crate::shadow::above_horizon;
     pub use crate::shadow::cuts::Cuts;
-    pub use crate::shadow::occlusion::Sights;
-    pub use crate::shadow::rows::{KnownRows, MOST_KNOWN, Rows};
+    pub use crate::shadow::occlusion::ProjectedLights;
+    pub use crate::shadow::projected_light::ProjectedLight;
+    pub use crate::shadow::rows::{KnownRows, MAX_KNOWN, Rows};
     pub use crate::shadow::sample_ray::SampleRays;
-    pub use crate::shadow::sight::Sight;
     pub use crate::shadow::terminator::ShadowPoint;
 }
 

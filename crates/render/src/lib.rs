@@ -15,6 +15,7 @@ mod bands;
 mod cache;
 mod counters;
 mod data;
+mod deformation;
 mod device;
 mod error;
 mod footprint;
@@ -22,16 +23,15 @@ mod gathered;
 mod gpu;
 #[doc(hidden)]
 pub mod internals;
-mod job;
 pub mod light_mesh;
 mod material_ids;
-mod moved;
 mod observer;
 mod passes;
 mod plan;
 mod prepared;
 mod probes;
 mod progress;
+mod render_context;
 mod renderer;
 pub mod sampling;
 mod settings;
@@ -50,9 +50,9 @@ mod view;
 pub mod accel {
     pub use lightmesh_trace::accel::triangle;
     pub use lightmesh_trace::accel::{
-        Accelerator, BruteForce, Bvh, BvhCost, Form, Grid, GridError, GridFault, GridFileError, GridOptions,
-        GridSaveError, Hit, Levels, PIECE, Ray, Region, ShortSegments, ShortTest, Take, TangentPlanes, Triangle,
-        Triangles,
+        Accelerator, AcceleratorKind, BruteForce, Bvh, BvhCost, CHUNK, ChunkSink, Grid, GridError, GridFault,
+        GridFileError, GridOptions, GridSaveError, Hit, Levels, Ray, Region, ShortSegments, ShortTest, TangentPlanes,
+        Triangle, Triangles,
     };
 }
 
@@ -63,11 +63,11 @@ pub mod cuda {
     };
 }
 
-pub use cache::{DeviceTable, HostTable, Kept, MeshCache, MeshFault, MeshFileError, MeshSaveError, SavedMesh, Table};
+pub use cache::{Cache, DeviceTable, HostTable, MeshCache, MeshFault, MeshFileError, MeshSaveError, SavedMesh, Table};
 pub use counters::{Counts, Tally};
 pub use data::cells::CellGroups;
+pub use data::light_point_visibility::{LightPointVisibility, VisibilityOfLight};
 pub use data::lights::{LightGroup, LightGroups};
-pub use data::lit::{Lit, LitBy};
 pub use data::masks::Masks;
 pub use data::picture::Picture;
 pub use data::rays::RayList;
@@ -76,11 +76,11 @@ pub use device::{Choice, Device, DeviceReport, UnknownDevice, devices};
 pub use error::RenderError;
 pub use footprint::Cone;
 pub use gathered::{Gathering, SurfaceLight};
-pub use job::{Job, Sampling};
 pub use observer::{Observer, Progress, Unobserved};
-pub use plan::{Footprint, Plan};
+pub use plan::{BytesPerRay, Plan};
 pub use prepared::{PreparedGeometry, PreparedScene};
 pub use probes::{GivenPoints, PointVisibility, Probes};
+pub use render_context::{RenderContext, Sampling};
 pub use renderer::{Frame, Renderer, render_on, render_on_with, visibility_on};
 pub use settings::{
     Acceleration, AmbientSource, Crop, Filter, Lookup, Mode, Quality, Setting, Settings, ShadowTests, Sharing,

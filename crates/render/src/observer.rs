@@ -38,7 +38,7 @@ pub trait Observer: Sync {
     }
 
     /// The renderer chose a setting automatically; a sentence for people. Treated as a note unless overridden.
-    fn chose(&self, setting: Setting, text: &str) {
+    fn report_default(&self, setting: Setting, text: &str) {
         let _ = setting;
         self.note(text);
     }

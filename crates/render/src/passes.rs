@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::antialiasing::Antialiasing;
-use crate::backend::run::Run;
+use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, WaveOf};
 use crate::counters::Tally;
 use crate::data::lights::LightGroup;
@@ -17,10 +17,10 @@ use crate::gathered::Gathering;
 use crate::plan::Plan;
 use crate::prepared::SeeThrough;
 use crate::probes::GivenPoints;
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
-use crate::techniques::{Taker, Technique};
+use crate::techniques::{Technique, VisibilitySink};
 use crate::view::View;
 
 /// A shared fragment takes this part of a pixel's samples of lights. Two or three of them make most of these pixels.
@@ -30,7 +30,7 @@ const PARTS_OF_MERGED: u32 = 2;
 
 /// Visibility at given points, to be computed.
 pub(crate) struct Baking<'a, B: Backend> {
-    pub(crate) run: Run<'a, B>,
+    pub(crate) runner: StageRunner<'a, B>,
     pub(crate) scene: &'a B::Scene,
     pub(crate) technique: &'a Technique,
     pub(crate) plan: &'a Plan,
@@ -39,17 +39,17 @@ pub(crate) struct Baking<'a, B: Backend> {
 impl<B: Backend> Baking<'_, B> {
     /// Finds what each probe sees of each light. Also returns how many rows of probes were processed at once.
     pub(crate) fn bake(&self, points: &GivenPoints) -> Result<(Visibility, u32), RenderError> {
-        let Baking { run, scene, technique, plan } = self;
+        let Baking { runner, scene, technique, plan } = self;
         let stages = technique.stages().len() as u64 + u64::from(plan.lets_through);
-        run.job.work.expect(points.len() as u64 * stages);
-        let at_once = run.or_forget(|backend| backend.rows_at_once(scene, plan))?;
+        runner.context.work.expect(points.len() as u64 * stages);
+        let at_once = runner.or_evict(|backend| backend.rows_at_once(scene, plan))?;
         let mut all = Visibility::dark(0..plan.lights.lights, points.len());
-        let at_once = in_bands(run, points.rows(), at_once, |rows| {
+        let at_once = in_bands(runner, points.rows(), at_once, |rows| {
             let range = points.range(&rows);
             let probes = points.part(&rows);
-            let (scene, rays, hits) = run.on_host(Stage::Upload, |backend| backend.probes(scene, &probes))?;
+            let (scene, rays, hits) = runner.on_host(Stage::Upload, |backend| backend.probes(scene, &probes))?;
             let wave = WaveOf::<B> {
-                job: run.job,
+                context: runner.context,
                 scene: &scene,
                 rays: &rays,
                 hits: &hits,
@@ -57,16 +57,16 @@ impl<B: Backend> Baking<'_, B> {
                 parts: 1,
             };
             let mut seen = None;
-            let light = Light { run, technique, plan };
-            light.each_group(&wave, run.backend.see_through(&scene).as_ref(), &mut |visibility| {
+            let light = Light { runner, technique, plan };
+            light.each_group(&wave, runner.backend.see_through(&scene).as_ref(), &mut |visibility| {
                 seen = Some(visibility);
                 Ok(())
             })?;
-            run.backend.finish(run.job)?;
+            runner.backend.finish(runner.context)?;
             if let Some(visibility) = seen {
-                let part = run.on_host(Stage::Download, |backend| backend.visibility(visibility))?;
+                let part = runner.on_host(Stage::Download, |backend| backend.visibility(visibility))?;
                 all.put(range, &part);
-                Tally::add(&run.job.tally.surface_points, part.rays as u64);
+                Tally::add(&runner.context.tally.surface_points, part.rays as u64);
             }
             Ok(())
         })?;
@@ -75,30 +75,30 @@ impl<B: Backend> Baking<'_, B> {
 }
 
 /// How surface points find what they see of lights.
-struct Light<'a, 'run, B: Backend> {
-    run: &'a Run<'run, B>,
+struct Light<'a, 'runner, B: Backend> {
+    runner: &'a StageRunner<'runner, B>,
     technique: &'a Technique,
     plan: &'a Plan,
 }
 
 impl<B: Backend> Light<'_, '_, B> {
-    /// Hands what each surface point of a wave sees of each light to `taker`, group by group of lights. Of a scene that is `see_through` only
+    /// Hands what each surface point of a wave sees of each light to `sink`, group by group of lights. Of a scene that is `see_through` only
     /// what is opaque hides, and the rest filters.
     fn each_group(
         &self,
         wave: &WaveOf<B>,
         see_through: Option<&SeeThrough<B::Scene>>,
-        taker: &mut Taker<B>,
+        sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
-        let Light { run, technique, plan } = self;
+        let Light { runner, technique, plan } = self;
         let Some(SeeThrough { blockers, panes, .. }) = see_through else {
-            return technique.visibility(run, wave, plan.lights, taker);
+            return technique.visibility(runner, wave, plan.lights, sink);
         };
         let wave = WaveOf::<B> { scene: blockers, ..*wave };
-        let n = run.backend.ray_count(wave.rays);
-        let aim = if technique.aims_at_centers() { Aim::Middle } else { wave.aim() };
-        technique.visibility(run, &wave, plan.lights, &mut |visibility| {
-            taker(run.stage(Stage::Filters, [n; 2], |backend| backend.filters(&wave, panes, &aim, visibility))?)
+        let n = runner.backend.ray_count(wave.rays);
+        let target = if technique.targets_centers() { ShadowTarget::Center } else { wave.shadow_target() };
+        technique.visibility(runner, &wave, plan.lights, &mut |visibility| {
+            sink(runner.stage(Stage::Filters, [n; 2], |backend| backend.filters(&wave, panes, &target, visibility))?)
         })
     }
 }
@@ -123,7 +123,7 @@ impl Depths {
 
 /// The passes over one image.
 pub(crate) struct Passes<'a, B: Backend> {
-    pub(crate) run: Run<'a, B>,
+    pub(crate) runner: StageRunner<'a, B>,
     pub(crate) scene: &'a B::Scene,
     /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
     pub(crate) see_through: Option<SeeThrough<B::Scene>>,
@@ -139,15 +139,18 @@ impl<B: Backend> Passes<'_, B> {
         if self.plan.antialiasing.is_none() {
             // With several samples it depends on what they see, and on the bands.
             let camera_rays = self.plan.pixels();
-            self.run.job.work.expect(camera_rays + self.pieces_of_wave(0, camera_rays));
+            self.runner.context.work.expect(camera_rays + self.pieces_of_wave(0, camera_rays));
         }
-        let at_once = self.run.or_forget(|backend| backend.rows_at_once(self.scene, self.plan))?;
+        let at_once = self.runner.or_evict(|backend| backend.rows_at_once(self.scene, self.plan))?;
         let at_once = at_once.min(self.plan.most_rows.unwrap_or(u32::MAX));
         let height = self.view.size()[1];
-        in_bands(&self.run, height, at_once, |rows| {
+        in_bands(&self.runner, height, at_once, |rows| {
             let finished = rows.end;
             if self.plan.antialiasing.is_some() {
-                self.run.job.work.begin_part([rows.start, rows.end].map(|row| f64::from(row) / f64::from(height)));
+                self.runner
+                    .context
+                    .work
+                    .begin_part([rows.start, rows.end].map(|row| f64::from(row) / f64::from(height)));
             }
             self.band(rows, picture)?;
             picture.finished = finished;
@@ -157,22 +160,23 @@ impl<B: Backend> Passes<'_, B> {
 
     /// Renders some rows.
     fn band(&self, rows: Range<u32>, picture: &mut Picture) -> Result<(), RenderError> {
-        let Passes { run, scene, view, plan, .. } = self;
+        let Passes { runner, scene, view, plan, .. } = self;
         let margin = plan.antialiasing.as_ref().map_or(0, Antialiasing::margin);
         let all = rows.start.saturating_sub(margin)..view.size()[1].min(rows.end.saturating_add(margin));
-        let mut film = run.on_host(Stage::Film, |backend| backend.film(plan, [all.clone(), rows]))?;
+        let mut film = runner.on_host(Stage::Film, |backend| backend.film(plan, [all.clone(), rows]))?;
         let pixels = view.size()[0] as usize * all.len();
         if plan.antialiasing.is_some() {
             // Camera rays, and what they see.
-            run.job.work.expect(2 * pixels as u64);
+            runner.context.work.expect(2 * pixels as u64);
         }
-        let rays = run.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, all, plan.bounces))?;
+        let rays =
+            runner.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, all, plan.bounces))?;
         match &plan.antialiasing {
             None => self.waves(rays, None, Depths::ALL, 1, &mut film)?,
             Some(samples) => self.samples(rays, samples, &mut film)?,
         }
-        run.backend.finish(run.job)?;
-        run.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
+        runner.backend.finish(runner.context)?;
+        runner.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
     }
 
     /// Renders a wave of rays, and those that surfaces let through or mirror. `known` is what they see, if that is known. Each ray takes one of
@@ -185,64 +189,66 @@ impl<B: Backend> Passes<'_, B> {
         parts: u32,
         film: &mut B::Film,
     ) -> Result<(), RenderError> {
-        let Passes { run, scene, plan, .. } = self;
+        let Passes { runner, scene, plan, .. } = self;
         for depth in depths.first.. {
-            let mut n = run.backend.ray_count(&rays);
+            let mut n = runner.backend.ray_count(&rays);
             if n == 0 {
                 break;
             }
             if depths.merge {
                 // The rest once they are merged.
-                run.job.work.expect(n as u64);
+                runner.context.work.expect(n as u64);
             } else if depth > 0 {
-                run.job.work.expect(self.pieces_of_wave(depth, n as u64));
+                runner.context.work.expect(self.pieces_of_wave(depth, n as u64));
             }
             let mut hits = match known.take() {
                 Some(hits) => hits,
-                None => run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?,
+                None => runner
+                    .stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(runner.context, scene, &rays))?,
             };
             if depths.merge {
                 let wave = self.wave(&rays, &hits, parts);
-                (rays, hits) = run.stage(Stage::MergedRays, [0; 2], |backend| backend.merged_rays(&wave))?;
-                n = run.backend.ray_count(&rays);
-                run.job.work.expect(self.pieces_of_wave(depth, n as u64) - n as u64);
+                (rays, hits) = runner.stage(Stage::MergedRays, [0; 2], |backend| backend.merged_rays(&wave))?;
+                n = runner.backend.ray_count(&rays);
+                runner.context.work.expect(self.pieces_of_wave(depth, n as u64) - n as u64);
             }
             let wave = self.wave(&rays, &hits, parts);
             self.light(&wave, film)?;
             if depths.last || depth >= plan.bounces && !plan.lets_through {
                 break;
             }
-            rays = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
+            rays = runner.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
         }
         Ok(())
     }
 
     /// Rays with what they see, each of which takes one of `parts` parts of the samples of lights.
     fn wave<'w>(&'w self, rays: &'w B::Rays, hits: &'w B::Hits, parts: u32) -> WaveOf<'w, B> {
-        WaveOf::<B> { job: self.run.job, scene: self.scene, rays, hits, lights: LightGroup::ALL, parts }
+        WaveOf::<B> { context: self.runner.context, scene: self.scene, rays, hits, lights: LightGroup::ALL, parts }
     }
 
     /// Adds the light that a wave's surface points reflect.
     fn light(&self, wave: &WaveOf<B>, film: &mut B::Film) -> Result<(), RenderError> {
-        let Passes { run, technique, plan, .. } = self;
-        let n = run.backend.ray_count(wave.rays);
+        let Passes { runner, technique, plan, .. } = self;
+        let n = runner.backend.ray_count(wave.rays);
         let solid = self.see_through.as_ref().map_or(wave.scene, |parts| &parts.solid);
         let gather = |how: &Gathering| {
             let wave = WaveOf::<B> { scene: solid, ..*wave };
-            run.stage(Stage::Gather, [n; 2], |backend| run.with_gathered(|kept| backend.gather(&wave, how, kept)))
+            runner.stage(Stage::Gather, [n; 2], |backend| runner.with_gathered(|kept| backend.gather(&wave, how, kept)))
         };
         let gathered = plan.gathering.as_ref().map(gather).transpose()?;
-        let light = Light { run, technique, plan };
+        let light = Light { runner, technique, plan };
         light.each_group(wave, self.see_through.as_ref(), &mut |visibility| {
-            run.stage(Stage::Shade, [n; 2], |backend| backend.shade(wave, &visibility, gathered.as_ref(), film))
+            runner.stage(Stage::Shade, [n; 2], |backend| backend.shade(wave, &visibility, gathered.as_ref(), film))
         })
     }
 
     /// Renders pixels with several samples; `rays` go through their centres.
     fn samples(&self, mut rays: B::Rays, all: &Antialiasing, film: &mut B::Film) -> Result<(), RenderError> {
-        let Passes { run, scene, .. } = self;
-        let n = run.backend.ray_count(&rays);
-        let mut hits = run.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(run.job, scene, &rays))?;
+        let Passes { runner, scene, .. } = self;
+        let n = runner.backend.ray_count(&rays);
+        let mut hits =
+            runner.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(runner.context, scene, &rays))?;
         let mut done = 0;
         while done < all.samples {
             let numbers = done..all.samples.min(done + all.at_once());
@@ -252,10 +258,10 @@ impl<B: Backend> Passes<'_, B> {
             let range = SampleRange { all, numbers };
             let pieces = n * range.numbers.len();
             let light = if all.apart { 0 } else { self.pieces_of_light(n as u64) };
-            run.job.work.expect((pieces + n) as u64 + light);
+            runner.context.work.expect((pieces + n) as u64 + light);
             let centers = self.wave(&rays, &hits, 1);
-            let sampled =
-                run.stage(Stage::PixelSamples, [pieces; 2], |backend| backend.pixel_samples(&centers, film, &range))?;
+            let sampled = runner
+                .stage(Stage::PixelSamples, [pieces; 2], |backend| backend.pixel_samples(&centers, film, &range))?;
             let mut samples;
             (samples, rays, hits) = sampled;
             let wave = self.wave(&rays, &hits, 1);
@@ -265,13 +271,13 @@ impl<B: Backend> Passes<'_, B> {
 
             // The others, by surface or sample by sample.
             let [shared, single, mirror] =
-                run.stage(Stage::Fragments, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
+                runner.stage(Stage::Fragments, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
             for ((list, hits), depths, parts) in
                 [(shared, Depths::FIRST, PARTS_OF_FRAGMENT), (single, Depths::ALL, all.samples)]
             {
-                let fragments = run.backend.ray_count(&list) as u64;
+                let fragments = runner.backend.ray_count(&list) as u64;
                 let mirrors = if depths.last { 0 } else { self.pieces_of_mirrors(0, fragments) };
-                run.job.work.expect(self.pieces_of_light(fragments) + mirrors);
+                runner.context.work.expect(self.pieces_of_light(fragments) + mirrors);
                 self.waves(list, Some(hits), depths, parts, film)?;
             }
             self.mirrors(mirror, film)?;
@@ -281,14 +287,14 @@ impl<B: Backend> Passes<'_, B> {
 
     /// Renders what samples that are not shaded themselves show in mirrors.
     fn mirrors(&self, (rays, hits): (B::Rays, B::Hits), film: &mut B::Film) -> Result<(), RenderError> {
-        let run = &self.run;
-        let n = run.backend.ray_count(&rays);
+        let runner = &self.runner;
+        let n = runner.backend.ray_count(&rays);
         if n == 0 {
             return Ok(());
         }
-        run.job.work.expect(n as u64);
+        runner.context.work.expect(n as u64);
         let wave = self.wave(&rays, &hits, 1);
-        let mirrored = run.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
+        let mirrored = runner.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
         drop((rays, hits));
         self.waves(mirrored, None, Depths::MIRRORED, PARTS_OF_MERGED, film)
     }
@@ -319,30 +325,30 @@ impl<B: Backend> Passes<'_, B> {
 /// If memory runs out in spite of the plan, the band is restarted: first without what is kept from earlier images, then with half
 /// of its rows. How much memory an image needs is known only once its light points are.
 pub(crate) fn in_bands<B: Backend>(
-    run: &Run<B>,
+    runner: &StageRunner<B>,
     rows: u32,
     mut at_once: u32,
     mut band: impl FnMut(Range<u32>) -> Result<(), RenderError>,
 ) -> Result<u32, RenderError> {
-    let job = run.job;
+    let context = runner.context;
     let mut first = 0;
     while first < rows {
         let rows = first..rows.min(first.saturating_add(at_once));
-        let (counted, done, total) = (job.tally.snapshot(), job.work.done(), job.work.total());
+        let (counted, done, total) = (context.tally.snapshot(), context.work.done(), context.work.total());
         match band(rows.clone()) {
             Ok(()) => first = rows.end,
-            Err(RenderError::DeviceMemory { .. }) if rows.len() > 1 || run.keeps() => {
-                job.tally.restore(&counted);
-                job.work.rewind(done, total);
-                if run.forget() {
+            Err(RenderError::DeviceMemory { .. }) if rows.len() > 1 || runner.has_cache() => {
+                context.tally.restore(&counted);
+                context.work.rewind(done, total);
+                if runner.evict() {
                     continue;
                 }
                 at_once = rows.len() as u32 / 2;
-                job.observer.note(&format!("device memory is short: {at_once} rows at once"));
+                context.observer.note(&format!("device memory is short: {at_once} rows at once"));
             }
             Err(error) => {
                 // What is counted are the bands that are finished.
-                job.tally.restore(&counted);
+                context.tally.restore(&counted);
                 return Err(error);
             }
         }

@@ -9,7 +9,7 @@ use crate::gathered::Gathering;
 
 /// Bytes that a technique needs per ray at its peak, on the host and on a device, with the shares of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Footprint {
+pub struct BytesPerRay {
     /// If the host computes.
     pub host: u64,
     /// On a device.
@@ -52,7 +52,7 @@ pub struct Plan {
     /// Bytes that may be added to these.
     pub reserved: u64,
     /// The additional bytes that the technique needs per ray.
-    pub footprint: Footprint,
+    pub bytes_per_ray: BytesPerRay,
 }
 
 impl Plan {

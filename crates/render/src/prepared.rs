@@ -6,17 +6,17 @@
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use glam::Vec3;
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 use lightmesh_scene::{Bounds, Camera, Geometry, Instance, Lights, Material, Mesh, Scene, Texture};
 use lightmesh_trace::accel::{
-    Accelerator, Beams, BruteForce, Bvh, Coverage, Form, Grid, GridOptions, Triangle, Triangles, coverage,
+    Accelerator, AcceleratorKind, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, Triangles, coverage,
     geometry_hash,
 };
 use xxhash_rust::xxh3::Xxh3;
 
+use crate::deformation::{boxes, differs_only_in_positions, union};
 use crate::error::RenderError;
 use crate::material_ids::MaterialIds;
-use crate::moved::{around_both, boxes, differ_by_places};
 use crate::observer::Observer;
 use crate::settings::{Acceleration, Setting};
 use crate::stage::Stage;
@@ -47,7 +47,7 @@ pub struct PreparedGeometry {
     /// The same triangles for shadow rays, if some are not opaque.
     pub(crate) see_through: Option<SeeThrough<Arc<PreparedGeometry>>>,
     /// What moved since it was prepared before.
-    pub(crate) moved: Option<Moved>,
+    pub(crate) deformation: Option<Deformation>,
     /// Hash of which triangles the structure holds; 0: all.
     held: u64,
     /// Hash of all that decides what hides what, once it is asked for.
@@ -59,11 +59,11 @@ pub struct PreparedGeometry {
     /// About the middle of the bounds.
     center: Vec3,
     /// More than the distance from there to any triangle.
-    far: f32,
+    sun_distance: f32,
 }
 
 /// What moved since geometry was prepared before.
-pub(crate) struct Moved {
+pub(crate) struct Deformation {
     /// The geometry before.
     pub(crate) before: Weak<PreparedGeometry>,
     pub(crate) boxes: Arc<[Bounds]>,
@@ -125,7 +125,7 @@ impl PreparedGeometry {
         observer: &dyn Observer,
     ) -> Result<Option<PreparedGeometry>, RenderError> {
         let from_file = matches!(self.acceleration, Acceleration::GridFile(_));
-        if from_file || !differ_by_places(before, geometry) {
+        if from_file || !differs_only_in_positions(before, geometry) {
             return Ok(None);
         }
         observer.begin(Stage::Build, geometry.mesh.triangles.len() as u64);
@@ -137,19 +137,20 @@ impl PreparedGeometry {
         let triangles: Vec<Triangle> = self.triangles.stored().iter().enumerate().map(triangle).collect();
         let boxes = boxes([before, geometry], self.triangles.stored(), &triangles);
         let shapes = geometry.mesh.instances.shapes();
-        let known = match self.accelerator.form() {
-            Form::Bvh(bvh) if self.triangles.stored()[shapes.clone()] == triangles[shapes] => Some(bvh),
+        let known = match self.accelerator.kind() {
+            AcceleratorKind::Bvh(bvh) if self.triangles.stored()[shapes.clone()] == triangles[shapes] => Some(bvh),
             _ => None,
         };
         let structures = Structures { geometry, acceleration: &self.acceleration, budget, known };
         let mut prepared = structures.over(triangles, self.coverage.clone(), Arc::clone(&self.mip_levels))?;
-        let moved =
-            |before: &Arc<PreparedGeometry>| Some(Moved { before: Arc::downgrade(before), boxes: Arc::clone(&boxes) });
-        prepared.moved = moved(self);
+        let deformation = |before: &Arc<PreparedGeometry>| {
+            Some(Deformation { before: Arc::downgrade(before), boxes: Arc::clone(&boxes) })
+        };
+        prepared.deformation = deformation(self);
         if let (Some(parts), Some(before)) = (&mut prepared.see_through, &self.see_through) {
             let pairs = [(&mut parts.blockers, &before.blockers), (&mut parts.panes, &before.panes)];
             for (part, before) in pairs {
-                Arc::get_mut(part).expect("nobody else has it yet").moved = moved(before);
+                Arc::get_mut(part).expect("nobody else has it yet").deformation = deformation(before);
             }
         }
         *locked(&prepared.unreported) = start.elapsed().as_secs_f64();
@@ -191,13 +192,13 @@ impl PreparedGeometry {
             materials: self.materials.clone(),
             mip_levels: Arc::clone(&self.mip_levels),
             see_through: None,
-            moved: None,
+            deformation: None,
             held: 0,
             hash: OnceLock::new(),
             acceleration: self.acceleration.clone(),
             unreported: Mutex::new(0.0),
             center: self.center,
-            far: self.far,
+            sun_distance: self.sun_distance,
         }
     }
 
@@ -217,13 +218,13 @@ impl PreparedGeometry {
 
     /// The distance of a directional light from `from`: beyond every triangle. Needed for every segment, so computed without a square root.
     #[inline(always)]
-    pub fn reach(&self, from: Vec3) -> f32 {
-        self.far + 2.0 * (from - self.center).abs().element_sum()
+    pub fn sun_distance(&self, from: Vec3) -> f32 {
+        self.sun_distance + 2.0 * (from - self.center).abs().element_sum()
     }
 
-    /// The parameters of [`reach`](PreparedGeometry::reach), for devices.
-    pub(crate) fn reach_parameters(&self) -> (Vec3, f32) {
-        (self.center, self.far)
+    /// The parameters of [`sun_distance`](PreparedGeometry::sun_distance), for devices.
+    pub(crate) fn sun_distance_parameters(&self) -> (Vec3, f32) {
+        (self.center, self.sun_distance)
     }
 
     /// Bytes that the geometry occupies on the host, including the acceleration structure, the smaller levels of textures and
@@ -295,12 +296,12 @@ impl Structures<'_> {
         let own = geometry.mesh.own_triangles().map(|stored| &triangles[stored]);
         let bounds = Bounds::around(own.filter(|triangle| triangle.is_usable()).flat_map(Triangle::corners));
         let instances = geometry.mesh.instances.list();
-        let bounds = instances.iter().fold(bounds, |all, Instance { bounds, .. }| around_both(all, *bounds));
-        let (center, far) = middle_and_reach(&bounds);
+        let bounds = instances.iter().fold(bounds, |all, Instance { bounds, .. }| union(all, *bounds));
+        let (center, sun_distance) = center_and_sun_distance(&bounds);
         let mut prepared = PreparedGeometry {
-            triangles: match accelerator.form() {
-                Form::Bvh(bvh) => Triangles::new(triangles.into(), Arc::clone(bvh.instances())),
-                Form::Grid(_) | Form::BruteForce(_) => triangles.into(),
+            triangles: match accelerator.kind() {
+                AcceleratorKind::Bvh(bvh) => Triangles::new(triangles.into(), Arc::clone(bvh.instances())),
+                AcceleratorKind::Grid(_) | AcceleratorKind::BruteForce(_) => triangles.into(),
             },
             accelerator,
             bounds,
@@ -308,13 +309,13 @@ impl Structures<'_> {
             materials: MaterialIds::new(geometry),
             mip_levels,
             see_through: None,
-            moved: None,
+            deformation: None,
             held: 0,
             hash: OnceLock::new(),
             acceleration: acceleration.clone(),
             unreported: Mutex::new(0.0),
             center,
-            far,
+            sun_distance,
         };
         if geometry.materials.iter().any(Material::lets_through) {
             let lets_through = |triangle: &Triangle| {
@@ -372,7 +373,7 @@ fn mip_levels(geometry: &Geometry, budget: Budget) -> Result<AllLevels, RenderEr
 }
 
 /// The error for a texture of which something does not fit into memory.
-fn too_large(geometry: &Geometry, (index, short): (usize, Short)) -> RenderError {
+fn too_large(geometry: &Geometry, (index, short): (usize, OverBudget)) -> RenderError {
     let Texture { name, size, .. } = &geometry.textures[index];
     RenderError::TextureMemory { name: name.clone(), size: *size, short }
 }
@@ -528,7 +529,7 @@ impl Preparations {
         }
         // Not under the lock: others may prepare other geometry in the meantime.
         let prepared = PreparedScene::within(scene, acceleration, budget, observer)?;
-        self.keep(scene, &prepared);
+        self.insert(scene, &prepared);
         Ok(prepared)
     }
 
@@ -543,13 +544,13 @@ impl Preparations {
     ) -> Result<PreparedScene, RenderError> {
         let is_other = before.geometry.acceleration == *acceleration && self.find(scene, acceleration).is_none();
         if is_other && let Some(moved) = before.moved(scene, budget, observer)? {
-            self.keep(scene, &moved);
+            self.insert(scene, &moved);
             return Ok(moved);
         }
         self.prepare(scene, acceleration, budget, observer)
     }
 
-    fn keep(&self, scene: &Scene, prepared: &PreparedScene) {
+    fn insert(&self, scene: &Scene, prepared: &PreparedScene) {
         let flat = &prepared.scene.geometry;
         self.locked().push(Preparation {
             geometry: Arc::downgrade(&scene.geometry),
@@ -579,7 +580,7 @@ impl Preparations {
 
 /// Where suns are seen from: a point about the middle of the bounds, and more than the distance from there to any triangle. Both are
 /// multiples of a power of two, so that they rarely change when objects move: the segments to a sun would change with them, by rounding.
-pub fn middle_and_reach(bounds: &Bounds) -> (Vec3, f32) {
+pub fn center_and_sun_distance(bounds: &Bounds) -> (Vec3, f32) {
     if bounds.is_empty() {
         return (Vec3::ZERO, 1.0);
     }

@@ -99,8 +99,8 @@ impl<'a> GivenPoints<'a> {
         points: &'a [Vec3],
         normals: &'a [Vec3],
     ) -> Result<GivenPoints<'a>, RenderError> {
-        if points.len() != normals.len() || points.len() > MOST_PROBES {
-            return Err(RenderError::Points { points: points.len(), normals: normals.len(), most: MOST_PROBES });
+        if points.len() != normals.len() || points.len() > MAX_PROBES {
+            return Err(RenderError::Points { points: points.len(), normals: normals.len(), most: MAX_PROBES });
         }
         let is_usable = |(point, normal): (&Vec3, &Vec3)| point.is_finite() && normal.try_normalize().is_some();
         if let Some(index) = points.iter().zip(normals).position(|probe| !is_usable(probe)) {
@@ -151,4 +151,4 @@ impl<'a> GivenPoints<'a> {
 }
 
 /// Rays are numbered in 32 bits.
-const MOST_PROBES: usize = u32::MAX as usize - 1;
+const MAX_PROBES: usize = u32::MAX as usize - 1;

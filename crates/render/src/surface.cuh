@@ -22,7 +22,7 @@ DEVICE SurfacePoint surface_point(const Ray &ray, const Hit &hit, const Corners 
     const Vec3 position = (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c;
     Vec3 outward = cross(b - a, c - a);
     const float square = length_squared(outward);
-    outward = square > LEAST_SQUARE ? outward / sqrtf(square) : needle_normal(corners, ray.direction);
+    outward = square > MIN_SQUARE ? outward / sqrtf(square) : needle_normal(corners, ray.direction);
     const Vec3 normal = dot(outward, ray.direction) > 0.0f ? -outward : outward;
     const float error = GAMMA_32 * max_element(abs(a) + abs(b) + abs(c));
     return SurfacePoint{position, position + error * normal, normal};
@@ -35,7 +35,7 @@ DEVICE Vec3 behind(const SurfacePoint &point) { return 2.0f * point.position - p
 DEVICE float gap_behind(const Ray &ray, const Hit &hit, const Corners &corners) {
     const float error = GAMMA_32 * max_element(abs(corners.a) + abs(corners.b) + abs(corners.c));
     const float steep = fabsf(dot(surface_point(ray, hit, corners).normal, ray.direction));
-    return error / fmaxf(steep, LEAST_STEEPNESS * length(ray.direction));
+    return error / fmaxf(steep, MIN_STEEPNESS * length(ray.direction));
 }
 
 // The surface point that ray number `ray` sees; the ray must have hit something.
@@ -82,7 +82,7 @@ DEVICE bool smooth_at(const Hit &hit, const Normals &corners, Vec3 &normal, floa
     const Vec3 none = splat(0.0f);
     normal = (1.0f - hit.u - hit.v) * corners.a + hit.u * corners.b + hit.v * corners.c;
     square = length_squared(normal);
-    return !(corners.a == none || corners.b == none || corners.c == none || square < LEAST_SMOOTH_SQUARE);
+    return !(corners.a == none || corners.b == none || corners.c == none || square < MIN_SMOOTH_SQUARE);
 }
 
 // The unit normal that shading uses, on the side of the geometric normal `facing`.

@@ -1,7 +1,7 @@
 //! From a hit to the surface point that all further steps start from.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{GAMMA_32, LEAST_SMOOTH_SQUARE, LEAST_SQUARE, LEAST_STEEPNESS};
+use lightmesh_layout::constants::{GAMMA_32, MIN_SMOOTH_SQUARE, MIN_SQUARE, MIN_STEEPNESS};
 use lightmesh_scene::Mesh;
 use lightmesh_trace::accel::{Hit, Ray, Triangle};
 
@@ -35,7 +35,7 @@ impl SurfacePoint {
         let position = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
         let outward = (b - a).cross(c - a);
         let square = outward.length_squared();
-        let outward = if square > LEAST_SQUARE { outward / square.sqrt() } else { needle_normal(triangle, ray) };
+        let outward = if square > MIN_SQUARE { outward / square.sqrt() } else { needle_normal(triangle, ray) };
         let normal = if outward.dot(ray.direction) > 0.0 { -outward } else { outward };
 
         // The interpolated point errs by γ(7) of the corners (Pharr, Jakob, Humphreys: *Physically Based Rendering*, 3.9). The
@@ -60,7 +60,7 @@ pub(crate) fn gap_behind(ray: &Ray, hit: &Hit, triangle: &Triangle) -> f32 {
     let [a, b, c] = triangle.corners();
     let error = GAMMA_32 * (a.abs() + b.abs() + c.abs()).max_element();
     let steep = SurfacePoint::new(ray, hit, triangle).normal.dot(ray.direction).abs();
-    error / steep.max(LEAST_STEEPNESS * ray.direction.length())
+    error / steep.max(MIN_STEEPNESS * ray.direction.length())
 }
 
 /// The normals of a triangle's corners, and what they are between them.
@@ -82,7 +82,7 @@ pub(crate) fn smooth_at(mesh: &Mesh, hit: &Hit) -> Option<Smooth> {
     let [a, b, c] = corners;
     let normal = (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
     let square = normal.length_squared();
-    let is_flat = corners.contains(&Vec3::ZERO) || square < LEAST_SMOOTH_SQUARE;
+    let is_flat = corners.contains(&Vec3::ZERO) || square < MIN_SMOOTH_SQUARE;
     (!is_flat).then_some(Smooth { corners, normal, square })
 }
 

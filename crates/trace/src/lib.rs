@@ -12,7 +12,7 @@ pub mod textures;
 pub mod internals {
     pub use crate::accel::bvh::build::{Child, LEVELS, Work, children, depth, extent, planes, tree};
     pub use crate::accel::coverage::between;
-    pub use crate::accel::distinct::distinct;
+    pub use crate::accel::deduplicate::deduplicate;
     pub use crate::accel::grid::distance::spread;
     pub use crate::accel::grid::file::{HEADER, Header, TRAILER, decode};
     pub use crate::accel::grid::overlap::triangle_meets_box;

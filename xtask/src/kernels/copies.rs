@@ -27,7 +27,7 @@ const ALLOWED: [(&str, &str); 35] = [
     ("0x01010101u", "the lowest bits of four bytes processed at once"),
     ("0x1f1f1f1fu", "the lower five bits of such bytes"),
     ("0x07070707u", "the lower three bits of such bytes"),
-    ("GRID_MOST_CELLS", "the range of this traversal; the host's has different bounds"),
+    ("GRID_MAX_CELLS", "the range of this traversal; the host's has different bounds"),
     ("WHOLE_FLOATS", "a float is converted to an integer by an addition; the host casts"),
     ("WHOLE_FLOATS_BITS", "the bits of WHOLE_FLOATS"),
     ("ALL_LANES", "an argument of CUDA's warp functions"),
@@ -48,7 +48,7 @@ const ALLOWED: [(&str, &str); 35] = [
     ("CANDIDATE_COST", "what steps of occluder lists cost on a device; the host has its own"),
     ("ROW_COST", "what steps of occluder lists cost on a device; the host has its own"),
     ("RAY_COST", "what steps of occluder lists cost on a device; the host has its own"),
-    ("LEAST_SPENT", "what steps of occluder lists cost on a device; the host has its own"),
+    ("MIN_COST_RATIO", "what steps of occluder lists cost on a device; the host has its own"),
     ("1.000001f", "rounding of products that only occur in this search"),
 ];
 

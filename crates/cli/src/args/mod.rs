@@ -306,7 +306,7 @@ mod tests {
     use super::*;
 
     /// Lines that the help of a flag has at most, its own included.
-    const MOST_LINES: usize = 3;
+    const MAX_LINES: usize = 3;
     const COLUMNS: usize = 100;
 
     #[test]
@@ -369,7 +369,7 @@ mod tests {
         for (name, mut command) in commands(&lightmesh, "lightmesh") {
             for help in [command.render_long_help().to_string(), command.render_help().to_string()] {
                 let (flags, values) = flags_and_lines(&help);
-                let long: Vec<_> = flags.iter().filter(|(_, lines)| *lines > MOST_LINES).collect();
+                let long: Vec<_> = flags.iter().filter(|(_, lines)| *lines > MAX_LINES).collect();
                 assert!(long.is_empty() && values.is_empty(), "{name}: {long:?} {values:?}\n{help}");
                 count += flags.len();
             }
@@ -390,7 +390,7 @@ mod tests {
             (flags.iter().map(|(_, lines)| *lines).collect::<Vec<_>>(), values.len())
         };
         assert_eq!(lines(odd.render_long_help().to_string()), (vec![4, 3, 2], 1));
-        assert!(lines(odd.render_help().to_string()).0[0] > MOST_LINES);
+        assert!(lines(odd.render_help().to_string()).0[0] > MAX_LINES);
     }
 
     #[test]

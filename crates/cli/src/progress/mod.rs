@@ -122,7 +122,7 @@ impl Observer for Watcher {
         }
     }
 
-    fn chose(&self, setting: Setting, text: &str) {
+    fn report_default(&self, setting: Setting, text: &str) {
         self.note(&format!("{text} ({} sets another)", flags::of(setting)));
     }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use lightmesh::Scene;
 use lightmesh_bench::report::Report;
 use lightmesh_bench::{Plan, Results, Suite, check_output_folder};
-use lightmesh_files::{is_standard_output, stand_by};
+use lightmesh_files::{is_standard_output, publish_on_abort};
 
 use crate::args::{BenchArgs, BenchCommand, SuiteArgs};
 use crate::failure::Failure;
@@ -39,7 +39,7 @@ fn run_and_write(suite: Suite, args: &SuiteArgs, watcher: &Watcher) -> Result<()
         Some(path) => lightmesh_bench::run_keeping(suite, &plan(args), watcher, move |results| {
             // If this fails, so will the end of the run, which says why.
             let files = results.ready(&path, false).ok();
-            stand_by(files.and_then(|mut files| files.pop()));
+            publish_on_abort(files.and_then(|mut files| files.pop()));
         })?,
         None => lightmesh_bench::run(suite, &plan(args), watcher)?,
     };
@@ -67,7 +67,7 @@ struct Standby;
 
 impl Drop for Standby {
     fn drop(&mut self) {
-        stand_by(None);
+        publish_on_abort(None);
     }
 }
 

@@ -16,11 +16,11 @@ use lightmesh_layout::scene;
 use lightmesh_render::accel::{Region, TangentPlanes, Triangle};
 use lightmesh_render::backend::{Backend, Cuda};
 use lightmesh_render::cuda::{Kernel, Launch, Pool, Runtime};
-use lightmesh_render::{Acceleration, Job, PreparedScene, Sampling, Unobserved};
+use lightmesh_render::{Acceleration, PreparedScene, RenderContext, Sampling, Unobserved};
 use lightmesh_scene::{Bounds, FIRST_INSTANCED, Geometry, Material, Mesh, Scene};
 use lightmesh_testkit::{Random, many_balls};
 
-use regions::{Asked, Form, asked};
+use regions::{Asked, RegionShape, asked};
 
 /// Maximum number of points with normals that cut off a region.
 const POINTS: usize = 32;
@@ -31,7 +31,7 @@ const REGIONS: usize = 12;
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct AskedRecord {
-    form: u32,
+    shape: u32,
     point_count: u32,
     slack: f32,
     reach: f32,
@@ -54,13 +54,13 @@ struct SearchRecord {
 
 impl Asked {
     fn record(&self) -> AskedRecord {
-        let (form, reach, emitter) = match self.form {
-            Form::Box => (0, 0.0, self.origins),
-            Form::Near(reach) => (1, reach, self.origins),
-            Form::Shaft(emitter) => (2, 0.0, emitter),
+        let (shape, reach, emitter) = match self.shape {
+            RegionShape::Box => (0, 0.0, self.origins),
+            RegionShape::Near(reach) => (1, reach, self.origins),
+            RegionShape::Shaft(emitter) => (2, 0.0, emitter),
         };
         let mut record = AskedRecord {
-            form,
+            shape,
             point_count: self.points.len() as u32,
             slack: self.slack,
             reach,
@@ -74,10 +74,10 @@ impl Asked {
     }
 
     fn region(&self) -> Region {
-        let region = match self.form {
-            Form::Box => Region::within(self.origins),
-            Form::Near(reach) => Region::near(self.origins, reach),
-            Form::Shaft(emitter) => Region::shaft(self.origins, emitter),
+        let region = match self.shape {
+            RegionShape::Box => Region::within(self.origins),
+            RegionShape::Near(reach) => Region::near(self.origins, reach),
+            RegionShape::Shaft(emitter) => Region::shaft(self.origins, emitter),
         };
         region.above(TangentPlanes::new(self.origins.min, self.points.iter().copied(), self.slack))
     }
@@ -99,8 +99,8 @@ fn prepared(triangles: &[[Vec3; 3]], acceleration: &Acceleration) -> PreparedSce
 fn search(prepared: &PreparedScene, regions: &[Asked]) -> Vec<Vec<u32>> {
     let emulator = Arc::new(Emulator::new());
     let (cuda, pool) = (Cuda::new(Arc::clone(&emulator)), Pool::new(Arc::clone(&emulator)));
-    let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
-    let scene = cuda.scene(&job, prepared, None).unwrap();
+    let context = RenderContext::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
+    let scene = cuda.scene(&context, prepared, None).unwrap();
     let room = 1024 * prepared.geometry.triangles.stored().len().max(1);
     let records: Vec<AskedRecord> = regions.iter().map(Asked::record).collect();
     let asked = pool.upload("regions", &records).unwrap();
@@ -200,8 +200,8 @@ fn a_search_finds_more_than_one_round_holds() {
     let first = corners[0];
     corners.extend((1..=700).map(|number| first.map(|corner| corner + 1e-5 * number as f32 * Vec3::X)));
     let around = Bounds { min: Vec3::splat(-9.0), max: Vec3::splat(9.0) };
-    let region = |form| Asked { form, origins: around, points: Vec::new(), slack: 0.0, cut: false };
-    let regions = [region(Form::Box), region(Form::Near(1.0)), region(Form::Shaft(around))];
+    let region = |shape| Asked { shape, origins: around, points: Vec::new(), slack: 0.0, cut: false };
+    let regions = [region(RegionShape::Box), region(RegionShape::Near(1.0)), region(RegionShape::Shaft(around))];
     assert_eq!(check("all", &corners, &regions, random), regions.len() * corners.len());
 }
 
@@ -245,13 +245,13 @@ fn nothing_below_all_planes_is_found() {
     let origins = Bounds { min: Vec3::new(0.0, 1e-3, 0.0), max: Vec3::new(0.1, 1e-3, 0.1) };
     let up = vec![(origins.min, Vec3::Y), (origins.max, Vec3::Y)];
     let aside = vec![(origins.min, Vec3::Y), (origins.max, Vec3::X)];
-    let shaft = Form::Shaft(Bounds { min: Vec3::NEG_Y, max: Vec3::Y });
-    for form in [Form::Near(0.7), shaft, Form::Near(5.0)] {
-        let ask = |points, slack| Asked { form, origins, points, slack, cut: true };
+    let shaft = RegionShape::Shaft(Bounds { min: Vec3::NEG_Y, max: Vec3::Y });
+    for shape in [RegionShape::Near(0.7), shaft, RegionShape::Near(5.0)] {
+        let ask = |points, slack| Asked { shape, origins, points, slack, cut: true };
         let regions = [ask(Vec::new(), 0.0), ask(up.clone(), 0.0), ask(up.clone(), 0.1), ask(aside.clone(), 0.0)];
         for acceleration in [Acceleration::BruteForce, Acceleration::Bvh, Acceleration::Grid(Some([2, 2, 2]))] {
             let found: Vec<_> = search(&prepared(&corners, &acceleration), &regions).into_iter().map(set).collect();
-            assert_eq!(found, [vec![0, 1], vec![1], vec![0, 1], vec![0, 1]], "{acceleration:?}, {form:?}");
+            assert_eq!(found, [vec![0, 1], vec![1], vec![0, 1], vec![0, 1]], "{acceleration:?}, {shape:?}");
         }
     }
 }
@@ -263,7 +263,7 @@ fn what_cannot_be_hit_is_not_found() {
     let corners = [[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::ZERO, Vec3::X, Vec3::splat(1e30)]];
     assert!(!Triangle::new(corners[1], 1).is_usable());
     let origins = Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
-    let region = Asked { form: Form::Box, origins, points: Vec::new(), slack: 0.0, cut: false };
+    let region = Asked { shape: RegionShape::Box, origins, points: Vec::new(), slack: 0.0, cut: false };
     check("unusable", &corners, std::slice::from_ref(&region), &mut Random::new(0));
     assert_eq!(search(&prepared(&corners, &Acceleration::BruteForce), &[region]), [[0]]);
 }

@@ -12,7 +12,7 @@ use crate::triangles::cube;
 /// What a region is built from.
 #[derive(Clone, Debug)]
 pub(crate) struct Asked {
-    pub(crate) form: Form,
+    pub(crate) shape: RegionShape,
     pub(crate) origins: Bounds,
     /// Points of `origins` with their normals.
     pub(crate) points: Vec<(Vec3, Vec3)>,
@@ -22,7 +22,7 @@ pub(crate) struct Asked {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Form {
+pub(crate) enum RegionShape {
     Box,
     Near(f32),
     Shaft(Bounds),
@@ -43,13 +43,13 @@ fn around(center: Vec3, random: &mut Random) -> Bounds {
 pub(crate) fn asked(near: Vec3, random: &mut Random) -> Asked {
     let center = near + cube(random) * pick(random, &[0.0, 0.3, 2.0]);
     let origins = around(center, random);
-    let form = match pick(random, &[0, 1, 2]) {
-        0 => Form::Box,
-        1 => Form::Near(pick(random, &[0.0, 1e-3, 0.2, 1.0, 4.0])),
+    let shape = match pick(random, &[0, 1, 2]) {
+        0 => RegionShape::Box,
+        1 => RegionShape::Near(pick(random, &[0.0, 1e-3, 0.2, 1.0, 4.0])),
         _ => {
             let away = pick(random, &[Vec3::ONE, Vec3::ONE, Vec3::X, Vec3::new(0.0, 1.0, 1.0), Vec3::ZERO]);
             let center = center + cube(random) * away * pick(random, &[1.0, 5.0, 20.0]);
-            Form::Shaft(around(center, random))
+            RegionShape::Shaft(around(center, random))
         }
     };
     let normals = [(); 5].map(|()| {
@@ -65,7 +65,7 @@ pub(crate) fn asked(near: Vec3, random: &mut Random) -> Asked {
         })
         .collect();
     let distinct: BTreeSet<_> = points.iter().map(|(_, normal)| normal.to_array().map(f32::to_bits)).collect();
-    Asked { form, origins, points, slack: pick(random, &[0.0, 1e-3]), cut: (1..=4).contains(&distinct.len()) }
+    Asked { shape, origins, points, slack: pick(random, &[0.0, 1e-3]), cut: (1..=4).contains(&distinct.len()) }
 }
 
 impl Asked {
@@ -83,12 +83,14 @@ impl Asked {
 
     fn holds(&self, point: DVec3) -> bool {
         let [min, max] = [self.origins.min, self.origins.max].map(Vec3::as_dvec3);
-        let held = match self.form {
-            Form::Box => point.cmpge(min).all() && point.cmple(max).all(),
-            Form::Near(reach) => {
+        let held = match self.shape {
+            RegionShape::Box => point.cmpge(min).all() && point.cmple(max).all(),
+            RegionShape::Near(reach) => {
                 (min - point).max(point - max).max(DVec3::ZERO).length_squared() <= f64::from(reach).powi(2)
             }
-            Form::Shaft(emitter) => shaft_holds([min, max], [emitter.min.as_dvec3(), emitter.max.as_dvec3()], point),
+            RegionShape::Shaft(emitter) => {
+                shaft_holds([min, max], [emitter.min.as_dvec3(), emitter.max.as_dvec3()], point)
+            }
         };
         let is_above =
             |&(from, normal): &(Vec3, Vec3)| (point - from.as_dvec3()).dot(normal.as_dvec3()) >= -f64::from(self.slack);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lightmesh_render::backend::{Cpu, Cuda};
-use lightmesh_render::{AmbientSource, Frame, Kept, Quality, Settings, Step, Unobserved, render_on, render_on_with};
+use lightmesh_render::{AmbientSource, Cache, Frame, Quality, Settings, Step, Unobserved, render_on, render_on_with};
 
 use lightmesh_testkit::runs_all;
 
@@ -89,7 +89,7 @@ fn same_by_rays<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
 /// From several places, with a cache.
 fn same_as_without<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     let scene = subject.prepared(0);
-    let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let (mut kept, mut on_host) = (Cache::default(), Cache::default());
     let size = if runs_all() { SIZE } else { SMALL };
     let mut rays = Vec::new();
     for to_the_right in [0.0, 1.5, 0.0] {
@@ -113,7 +113,7 @@ fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     let [of_device, of_host, again] = ["device.mesh", "host.mesh", "again.mesh"].map(|name| folder.path().join(name));
     let size = if runs_all() { SIZE } else { SMALL };
     let (scene, settings) = (subject.prepared(0), settings(subject, 0.0, size));
-    let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let (mut kept, mut on_host) = (Cache::default(), Cache::default());
     let fresh = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
     let fresh_on_host = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
     let saved = kept.save(&of_device, scene).unwrap();
@@ -124,9 +124,9 @@ fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     assert!(!R::EXACT || bytes(&of_device) == bytes(&of_host), "the files differ");
 
     // 1. The device reads what the host wrote, and the host what the device wrote.
-    let mut kept = Kept::load(&of_host, scene, Default::default()).unwrap();
+    let mut kept = Cache::load(&of_host, scene, Default::default()).unwrap();
     let with = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
-    let mut on_host = Kept::load(&of_device, scene, Default::default()).unwrap();
+    let mut on_host = Cache::load(&of_device, scene, Default::default()).unwrap();
     let with_on_host = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
     if R::EXACT {
         assert!(gathered(&with) == gathered(&fresh) && gathered(&with_on_host) == gathered(&fresh_on_host));
@@ -140,7 +140,7 @@ fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     assert!(!R::EXACT || bytes(&again) == bytes(&of_host), "the device writes another file");
     // 3. A device adds to what it read.
     let elsewhere = self::settings(subject, 1.5, size);
-    let mut kept = Kept::load(&of_device, scene, Default::default()).unwrap();
+    let mut kept = Cache::load(&of_device, scene, Default::default()).unwrap();
     let with = render_on_with(cuda, &mut kept, scene, &elsewhere, &Unobserved).unwrap();
     assert!(gathered(&with) == gathered(&render_on(cuda, scene, &elsewhere, &Unobserved).unwrap()));
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lightmesh_render::backend::{Cpu, Cuda};
-use lightmesh_render::{Frame, Kept, PreparedScene, Settings, Step, Unobserved, render_on, render_on_with};
+use lightmesh_render::{Cache, Frame, PreparedScene, Settings, Step, Unobserved, render_on, render_on_with};
 use lightmesh_scene::{Light, LightKind};
 use lightmesh_testkit::runs_all;
 
@@ -21,7 +21,7 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
 }
 
 fn same_pictures<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
-    let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let (mut kept, mut on_host) = (Cache::default(), Cache::default());
     let mut saved = 0;
     for (step, scene) in scenes(subject).iter().enumerate() {
         let settings = settings(subject, step);
@@ -43,7 +43,7 @@ fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     let folder = tempfile::tempdir().unwrap();
     let [of_device, of_host] = ["device.mesh", "host.mesh"].map(|name| folder.path().join(name));
     let (scene, settings) = (subject.prepared(0), settings(subject, 0));
-    let (mut kept, mut on_host) = (Kept::default(), Kept::default());
+    let (mut kept, mut on_host) = (Cache::default(), Cache::default());
     let whole = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
     render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
     let Some(saved) = kept.save(&of_device, scene).unwrap() else {
@@ -52,12 +52,12 @@ fn same_files<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
     };
     assert_eq!(Some(saved), on_host.save(&of_host, scene).unwrap());
     assert!(std::fs::read(&of_device).unwrap() == std::fs::read(&of_host).unwrap(), "the files differ");
-    let mut kept = Kept::load(&of_host, scene, Default::default()).unwrap();
+    let mut kept = Cache::load(&of_host, scene, Default::default()).unwrap();
     assert_eq!(kept.len(), saved.values);
     let again = render_on_with(cuda, &mut kept, scene, &settings, &Unobserved).unwrap();
     assert!(bits(&again) == bits(&whole) && tests(&again)[0] == 0, "{:?}", tests(&again));
     assert_eq!(kept.len(), saved.values);
-    let mut on_host = Kept::load(&of_device, scene, Default::default()).unwrap();
+    let mut on_host = Cache::load(&of_device, scene, Default::default()).unwrap();
     let again = render_on_with(&Cpu, &mut on_host, scene, &settings, &Unobserved).unwrap();
     assert_eq!(tests(&again), [0, tests(&whole).iter().sum()]);
     // Other light points than those of the file are added to it.

@@ -4,10 +4,14 @@ use std::collections::BTreeMap;
 
 use lightmesh_render::accel::Hit;
 use lightmesh_render::backend::{
-    Aim, Backend, Cpu, Cuda, DeviceHits, DeviceLit, DevicePoints, DeviceRays, DeviceScene, Seen, Wave, WaveOf,
+    Backend, Cpu, Cuda, DeviceHits, DeviceLightPointVisibility, DevicePoints, DeviceRays, DeviceScene, Seen,
+    ShadowTarget, Wave, WaveOf,
 };
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints};
-use lightmesh_render::{Job, LightGroup, Lit, LitBy, RayList, Sampling, ShortTests, Unobserved, Visibility};
+use lightmesh_render::{
+    LightGroup, LightPointVisibility, RayList, RenderContext, Sampling, ShortTests, Unobserved, Visibility,
+    VisibilityOfLight,
+};
 use lightmesh_scene::Weight;
 
 use crate::scenes::{SUBJECTS, Subject, THICKET};
@@ -104,8 +108,8 @@ struct Twins<'a, R: Target> {
     samples: u32,
 }
 
-fn job(samples: u32) -> Job<'static> {
-    Job::new(&Unobserved, Sampling { samples, seed: 5, spread: true })
+fn context(samples: u32) -> RenderContext<'static> {
+    RenderContext::new(&Unobserved, Sampling { samples, seed: 5, spread: true })
 }
 
 impl<'a, R: Target> Twins<'a, R> {
@@ -114,11 +118,11 @@ impl<'a, R: Target> Twins<'a, R> {
         let scene = subject.prepared(acceleration);
         let view = subject.view(size);
         let rays = Cpu.camera_rays(&view, 0..size[1], 0).unwrap();
-        let job = job(4);
-        let hits = Cpu.primary_rays(&job, scene, &rays).unwrap();
+        let context = context(4);
+        let hits = Cpu.primary_rays(&context, scene, &rays).unwrap();
         let device_rays = cuda.camera_rays(&view, 0..size[1], 0).unwrap();
-        let device_scene = cuda.scene(&job, scene, None).unwrap();
-        let device_hits = cuda.primary_rays(&job, &device_scene, &device_rays).unwrap();
+        let device_scene = cuda.scene(&context, scene, None).unwrap();
+        let device_hits = cuda.primary_rays(&context, &device_scene, &device_rays).unwrap();
         let found = device_hits.read().unwrap();
         assert_eq!(found.len(), hits.len());
         for (hit, &pixel) in hits.iter().zip(&rays.pixels) {
@@ -135,21 +139,21 @@ impl<'a, R: Target> Twins<'a, R> {
             device_scene,
             device_rays,
             device_hits,
-            samples: job.sampling.samples,
+            samples: context.sampling.samples,
         }
     }
 
-    fn job(&self) -> Job<'static> {
-        job(self.samples)
+    fn context(&self) -> RenderContext<'static> {
+        context(self.samples)
     }
 
-    fn on_host<'b>(&'b self, job: &'b Job<'b>) -> WaveOf<'b, Cpu> {
-        Wave { job, scene: self.scene, rays: &self.rays, hits: &self.hits, lights: LightGroup::ALL, parts: 1 }
+    fn on_host<'b>(&'b self, context: &'b RenderContext<'b>) -> WaveOf<'b, Cpu> {
+        Wave { context, scene: self.scene, rays: &self.rays, hits: &self.hits, lights: LightGroup::ALL, parts: 1 }
     }
 
-    fn on_device<'b>(&'b self, job: &'b Job<'b>) -> WaveOf<'b, Cuda<R>> {
+    fn on_device<'b>(&'b self, context: &'b RenderContext<'b>) -> WaveOf<'b, Cuda<R>> {
         Wave {
-            job,
+            context,
             scene: &self.device_scene,
             rays: &self.device_rays,
             hits: &self.device_hits,
@@ -160,48 +164,54 @@ impl<'a, R: Target> Twins<'a, R> {
 
     /// Shadow rays, one and many per light.
     fn shadow_rays(&self) {
-        let job = self.job();
-        let host = Cpu.shadow_rays(&self.on_host(&job), &Aim::Middle).unwrap();
-        let device = self.cuda.shadow_rays(&self.on_device(&job), &Aim::Middle).unwrap();
+        let context = self.context();
+        let host = Cpu.shadow_rays(&self.on_host(&context), &ShadowTarget::Center).unwrap();
+        let device = self.cuda.shadow_rays(&self.on_device(&context), &ShadowTarget::Center).unwrap();
         self.same_shares("hard shadows", &host, &device.read().unwrap(), 0.0, 0);
-        let host = Cpu.shadow_rays(&self.on_host(&job), &Aim::Extent(job.sampling)).unwrap();
-        let device = self.cuda.shadow_rays(&self.on_device(&job), &Aim::Extent(job.sampling)).unwrap();
+        let host = Cpu.shadow_rays(&self.on_host(&context), &ShadowTarget::Area(context.sampling)).unwrap();
+        let device = self.cuda.shadow_rays(&self.on_device(&context), &ShadowTarget::Area(context.sampling)).unwrap();
         let allowed = R::allowed(host.share.len(), 1000);
         self.same_shares("area shadows", &host, &device.read().unwrap(), 0.0, allowed);
     }
 
     /// Samples in rows, each surface point on its own and by lists: the same bits.
     fn occluder_lists(&self) {
-        let job = self.job();
-        let (host, device) = (self.on_host(&job), self.on_device(&job));
-        let aim = Aim::Extent(job.sampling);
-        let expected = Cpu.area_shadows(&host, &aim).unwrap();
-        let lists = Cpu.occluder_lists(&host, &Cpu.items(&host).unwrap(), &aim).unwrap();
+        let context = self.context();
+        let (host, device) = (self.on_host(&context), self.on_device(&context));
+        let target = ShadowTarget::Area(context.sampling);
+        let expected = Cpu.area_shadows(&host, &target).unwrap();
+        let lists = Cpu.occluder_lists(&host, &Cpu.items(&host).unwrap(), &target).unwrap();
         let same = (expected.share.iter().zip(&lists.share)).all(|(a, b)| a.to_bits() == b.to_bits());
         assert!(same, "{} samples: lists on the CPU", self.samples);
-        let found = self.cuda.area_shadows(&device, &aim).unwrap();
+        let found = self.cuda.area_shadows(&device, &target).unwrap();
         self.same_shares("samples in rows", &expected, &found.read().unwrap(), 0.0, 0);
         let items = self.cuda.items(&device).unwrap();
-        let found = self.cuda.occluder_lists(&device, &items, &aim).unwrap();
+        let found = self.cuda.occluder_lists(&device, &items, &target).unwrap();
         self.same_shares("occluder lists", &expected, &found.read().unwrap(), 0.0, 0);
     }
 
     /// One ray and more, of the whole image and of rows in its middle: the same bits.
     fn adaptive_shadows(&self) {
-        let job = self.job();
-        let aim = Aim::Extent(job.sampling);
-        let host = Cpu.adaptive_shadows(&self.on_host(&job), &aim).unwrap();
-        let device = self.cuda.adaptive_shadows(&self.on_device(&job), &aim).unwrap().read().unwrap();
+        let context = self.context();
+        let target = ShadowTarget::Area(context.sampling);
+        let host = Cpu.adaptive_shadows(&self.on_host(&context), &target).unwrap();
+        let device = self.cuda.adaptive_shadows(&self.on_device(&context), &target).unwrap().read().unwrap();
         let allowed = R::allowed(host.share.len(), 1000);
         self.same_shares("adaptive shadow rays", &host, &device, 0.0, allowed);
 
         let [width, height] = self.size;
         let rows = height / 3..height / 3 + 2;
         let rays = self.cuda.camera_rays(&self.subject.view(self.size), rows.clone(), 0).unwrap();
-        let hits = self.cuda.primary_rays(&job, &self.device_scene, &rays).unwrap();
-        let wave =
-            Wave { job: &job, scene: &self.device_scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
-        let band = self.cuda.adaptive_shadows(&wave, &aim).unwrap().read().unwrap();
+        let hits = self.cuda.primary_rays(&context, &self.device_scene, &rays).unwrap();
+        let wave = Wave {
+            context: &context,
+            scene: &self.device_scene,
+            rays: &rays,
+            hits: &hits,
+            lights: LightGroup::ALL,
+            parts: 1,
+        };
+        let band = self.cuda.adaptive_shadows(&wave, &target).unwrap().read().unwrap();
         let planes = device.chunks_exact(self.rays.pixels.len()).zip(band.chunks_exact((2 * width) as usize));
         for (light, (whole, band)) in planes.enumerate() {
             assert_eq!(band, &whole[(rows.start * width) as usize..][..band.len()], "rows of light {light}");
@@ -217,40 +227,40 @@ impl<'a, R: Target> Twins<'a, R> {
             radius: radius * step,
             weight,
         };
-        let (job, plain) = (self.job(), self.job().with_short_tests(ShortTests::Plain));
-        let wave = self.on_host(&job);
+        let (context, plain) = (self.context(), self.context().with_short_tests(ShortTests::Plain));
+        let wave = self.on_host(&context);
         let cells = Cpu.cells(&wave, &mesh).unwrap();
         let masks = Cpu.short_tests(&wave, &cells, &mesh).unwrap();
         let mut expected: Vec<(u32, Vec<u32>)> = (cells.members().iter().enumerate())
             .map(|(slot, &ray)| (self.rays.pixels[ray as usize], masks.mask(slot).to_vec()))
             .collect();
         expected.sort_unstable();
-        let device_cells = self.cuda.cells(&self.on_device(&job), &mesh).unwrap();
-        let on_device = |job| self.cuda.short_tests(&self.on_device(job), &device_cells, &mesh).unwrap();
-        for job in [&plain, &job] {
-            let found = on_device(job).read(&device_cells).unwrap();
+        let device_cells = self.cuda.cells(&self.on_device(&context), &mesh).unwrap();
+        let on_device = |context| self.cuda.short_tests(&self.on_device(context), &device_cells, &mesh).unwrap();
+        for context in [&plain, &context] {
+            let found = on_device(context).read(&device_cells).unwrap();
             let found: Vec<_> = found.into_iter().map(|(ray, _, mask)| (ray, mask)).collect();
-            let how = job.short_tests;
+            let how = context.short_tests;
             assert_eq!(found.len(), expected.len(), "{how:?}: surface points");
             for (found, expected) in found.iter().zip(&expected) {
                 assert_eq!(found, expected, "{how:?}: pixel and mask");
             }
         }
 
-        let device_masks = on_device(&job);
-        let points = Cpu.light_points(&job, &cells, &masks, &mesh).unwrap();
-        let device_points = self.cuda.light_points(&job, &device_cells, &device_masks, &mesh).unwrap();
+        let device_masks = on_device(&context);
+        let points = Cpu.light_points(&context, &cells, &masks, &mesh).unwrap();
+        let device_points = self.cuda.light_points(&context, &device_cells, &device_masks, &mesh).unwrap();
         same_points(&points, &device_points);
 
         let lit = Cpu.long_tests(&wave, &points, &mesh, None).unwrap();
-        let device_lit = self.cuda.long_tests(&self.on_device(&job), &device_points, &mesh, None).unwrap();
+        let device_lit = self.cuda.long_tests(&self.on_device(&context), &device_points, &mesh, None).unwrap();
         same_light(&points, &lit, &device_points, &device_lit);
 
         let seen = Seen { mesh: &mesh, cells: &cells, masks: &masks, points: &points, lit: &lit };
         let host = Cpu.interpolate(&wave, &seen).unwrap();
         let (cells, masks, points, lit) = (&device_cells, &device_masks, &device_points, &device_lit);
         let seen = Seen { mesh: &mesh, cells, masks, points, lit };
-        let device = self.cuda.interpolate(&self.on_device(&job), &seen).unwrap();
+        let device = self.cuda.interpolate(&self.on_device(&context), &seen).unwrap();
         let allowed = R::allowed(host.share.len(), 100);
         self.same_shares("interpolated", &host, &device.read().unwrap(), SHARE_TOLERANCE, allowed);
     }
@@ -291,10 +301,15 @@ fn same_points<R: Target>(host: &UsedPoints, device: &DevicePoints<R>) {
 
 /// Step 4: every light point sees the same of every light. The device has one word per slot of its table for each light without an
 /// area, then one number per light point, by rank, for each area light.
-fn same_light<R: Target>(points: &UsedPoints, lit: &Lit, device_points: &DevicePoints<R>, device_lit: &DeviceLit<R>) {
+fn same_light<R: Target>(
+    points: &UsedPoints,
+    lit: &LightPointVisibility,
+    device_points: &DevicePoints<R>,
+    device_lit: &DeviceLightPointVisibility<R>,
+) {
     let (bricks, ranks) = (device_points.read_bricks().unwrap(), device_points.read_ranks().unwrap());
     let (bits, counts) = device_lit.read().unwrap();
-    let plain = lit.lights.iter().filter(|light| matches!(light, LitBy::Bits(_))).count();
+    let plain = lit.lights.iter().filter(|light| matches!(light, VisibilityOfLight::Bits(_))).count();
     let slots = bits.len() / plain.max(1);
     let (mut next_bits, mut next_count) = (0, 0);
     let mut differ = Vec::new();
@@ -302,10 +317,10 @@ fn same_light<R: Target>(points: &UsedPoints, lit: &Lit, device_points: &DeviceP
         for &(slot, key, used) in &bricks {
             let brick = points.bricks().find(key).expect("the bricks are the same");
             match host {
-                LitBy::Bits(words) => {
+                VisibilityOfLight::Bits(words) => {
                     assert_eq!(bits[next_bits + slot] & used, words[brick] & used, "light {light}, brick {key}");
                 }
-                LitBy::Share { seen, .. } => {
+                VisibilityOfLight::Share { seen, .. } => {
                     for bit in (0..64).filter(|bit| used >> bit & 1 == 1) {
                         let rank = ranks[slot] + (used & ((1 << bit) - 1)).count_ones();
                         let (a, b) = (seen[points.rank(brick, bit)], counts[next_count + rank as usize]);
@@ -317,8 +332,8 @@ fn same_light<R: Target>(points: &UsedPoints, lit: &Lit, device_points: &DeviceP
             }
         }
         match host {
-            LitBy::Bits(_) => next_bits += slots,
-            LitBy::Share { .. } => next_count += points.count(),
+            VisibilityOfLight::Bits(_) => next_bits += slots,
+            VisibilityOfLight::Share { .. } => next_count += points.count(),
         }
     }
     let allowed = R::allowed(next_count, 1000);

@@ -9,7 +9,7 @@ use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
-use crate::matte::{MOST_RANKS, Matte, Rank};
+use crate::matte::{MAX_RANKS, Matte, Rank};
 
 /// What a layer is called in files.
 #[derive(Clone, Copy)]
@@ -64,7 +64,7 @@ impl Naming {
             }
             let nearest = numbers(self.nearest)?;
             let mut ranks = Vec::new();
-            for channels in (0..MOST_RANKS).map(|rank| self.channels(rank)) {
+            for channels in (0..MAX_RANKS).map(|rank| self.channels(rank)) {
                 let [identifiers, share] = [values(&channels[0])?, values(&channels[1])?];
                 let number: Option<Vec<u32>> =
                     identifiers.iter().map(|value| by_bits.get(&value.to_bits()).copied()).collect();

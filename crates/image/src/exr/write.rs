@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use super::cryptomatte::{MATERIALS, Naming, OBJECTS, identifiers};
 use super::order::Sorted;
 use super::{ALPHA, COLOR, DEPTH, NORMAL, POSITION, REST, USED, attributes, light_names, visibility_name};
-use crate::matte::MOST_RANKS;
+use crate::matte::MAX_RANKS;
 use crate::options::{ExrCompression, ExrParts, ExrSamples, SaveOptions};
 use crate::sizes::check_fits;
 use crate::{EncodeError, Format, Frame, Layers, Matte, Window, deflate};
@@ -107,7 +107,7 @@ pub fn write_layers(
     parts.push(Part::new("ids", numbers));
     parts.extend(mattes.iter().map(|(matte, naming, identifiers)| Part {
         texts: naming.attributes(matte).to_vec(),
-        ..Part::new(naming.layer, (0..MOST_RANKS).flat_map(|rank| ranks(matte, *naming, identifiers, rank)))
+        ..Part::new(naming.layer, (0..MAX_RANKS).flat_map(|rank| ranks(matte, *naming, identifiers, rank)))
     }));
     parts.retain(|part| !part.channels.is_empty());
     if options.exr.parts == ExrParts::Single {

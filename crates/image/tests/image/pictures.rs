@@ -1,6 +1,6 @@
 //! Images shared by the tests.
 
-use lightmesh_image::{Frame, Layers, MOST_RANKS, Matte, Transfer};
+use lightmesh_image::{Frame, Layers, MAX_RANKS, Matte, Transfer};
 
 /// Colours that every 8-bit format can represent exactly, different in each pixel and channel.
 pub(crate) fn coded(width: u32, height: u32) -> Frame {
@@ -31,7 +31,7 @@ pub(crate) fn layered(width: u32, height: u32) -> Frame {
         used: (0..pixels as u32).collect(),
         lights: (0..2).map(|light| vec![[0.125 * light as f32, 0.25, 0.5]; pixels]).collect(),
         rest: vec![[0.0, 0.5, 0.25]; pixels],
-        object: Matte::nothing(vec!["floor".to_owned()], MOST_RANKS, pixels),
+        object: Matte::nothing(vec!["floor".to_owned()], MAX_RANKS, pixels),
         material: Matte::default(),
     };
     layers.depth[0] = f32::INFINITY;

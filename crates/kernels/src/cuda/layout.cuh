@@ -20,7 +20,7 @@
 // Stands for a light in the random pattern of a pixel's samples.
 #define PIXEL_PATTERN 0x7fffffffu
 // Samples of a pixel at most if any are shaded together.
-#define MOST_SHARED 32u
+#define MAX_SHARED 32u
 // A pixel's samples and its centre lie on one surface.
 #define PIXEL_SHARED 1u
 // The same, but neighbours differ so much that each sample is shaded by itself.
@@ -65,7 +65,7 @@
 // Directions whose largest component exceeds this value, 2^40, or is below its reciprocal are scaled.
 #define LARGEST_DIRECTION 0x1p40f
 // Direction components below this share of the largest, 2^-30, count as such a share or as zero.
-#define LEAST_COMPONENT 0x1p-30f
+#define MIN_COMPONENT 0x1p-30f
 // Relative margin of tests against the boxes of a BVH, 2^-19; derived in bvh/walk.rs.
 #define BVH_MARGIN 0x1p-19f
 // Relative margin by which boxes of shapes in many places are enlarged, 2^-18; derived in accel/instanced.rs.
@@ -105,20 +105,20 @@
 // The bits of √½, where mantissas that logarithms are computed from start.
 #define ROOT_OF_HALF_BITS 0x3f3504f3u
 // If the square of twice its area is below this, a triangle's normal has lost its bits to underflow.
-#define LEAST_SQUARE 0x1.4484cp-100f
+#define MIN_SQUARE 0x1.4484cp-100f
 // If the square of its length is below this, an interpolated normal has cancelled out.
-#define LEAST_SMOOTH_SQUARE 0x1.197998p-40f
+#define MIN_SMOOTH_SQUARE 0x1.197998p-40f
 // The code of 0 in an image of normals.
 #define NORMAL_CODE_ZERO 0x1p7f
 // By how much that of 1 is larger.
 #define NORMAL_CODE_ONE 0x1.fcp6f
 // What surfaces with images of normals mirror goes at least at this cosine from the geometric normal, or half as far from the surface as the
 // view.
-#define LEAST_MIRRORED_COSINE 0x1.47ae14p-7f
+#define MIN_MIRRORED_COSINE 0x1.47ae14p-7f
 // The ellipse in which a cone meets a surface is longer than wide by at most the reciprocal of this cosine.
-#define LEAST_FOOTPRINT_COSINE 0x1.0c6f7ap-20f
+#define MIN_FOOTPRINT_COSINE 0x1.0c6f7ap-20f
 // Lookups along the major axis of a footprint in a texture, at most.
-#define MOST_PROBES 16u
+#define MAX_PROBES 16u
 // Bits of a channel of a texel below the image itself.
 #define TEXEL_BITS 21u
 // White in such a channel.
@@ -126,13 +126,13 @@
 // Places of the table of what facets reflect, along each axis.
 #define FACET_PLACES 32u
 // The least width of their lobes: smoother ones are points in single precision.
-#define LEAST_FACET_WIDTH 0x1.0624dep-9f
+#define MIN_FACET_WIDTH 0x1.0624dep-9f
 // The least cosine at which they are seen.
-#define LEAST_VIEW_COSINE 0x1.0624dep-10f
+#define MIN_VIEW_COSINE 0x1.0624dep-10f
 // The least cosine at which the width of a ray on a light is told,
-#define LEAST_SEEN_COSINE 0x1.47ae14p-7f
+#define MIN_SEEN_COSINE 0x1.47ae14p-7f
 // and at which lights that shine evenly become brighter.
-#define LEAST_SHINING_COSINE 0x1.99999ap-4f
+#define MIN_SHINING_COSINE 0x1.99999ap-4f
 // A light is in front of a surface as far away, by rounding and by a hair: lamps lie in ceilings.
 #define SAME_DISTANCE 0x1.0004p0f
 // Up to this roughness, mirror rays show all that facets reflect,
@@ -150,11 +150,11 @@
 // The angle of the cone that all mirror rays of facets stand for, in widths of their lobes: most of what they reflect comes from there.
 #define WIDTH_OF_LOBE 0x1.8p1f
 // A mirror ray of facets that shows all of a pixel is as many as that, in different directions, if the lobe is wide,
-#define MOST_DIRECTIONS 8u
+#define MAX_DIRECTIONS 8u
 // as from this width on, the square of the roughness.
 #define WIDE_LOBE 0x1.47ae14p-7f
 // Cones of mirror rays are as narrow as if a pixel had that many at most.
-#define MOST_CONES 0x1p6f
+#define MAX_CONES 0x1p6f
 // The bit from which on a ray's number among them is in a list, above its sample.
 #define DIRECTION_SHIFT 17u
 // Stands for a light in the random pattern of the directions of a pixel's mirror rays.
@@ -170,7 +170,7 @@
 // Of blue.
 #define LUMINANCE_BLUE 0x1.27bb3p-4f
 // Vertex normals farther from the triangle's than this cosine says, 45°, do not tell a curved surface.
-#define LEAST_CURVED_COSINE 0x1.69fbe8p-1f
+#define MIN_CURVED_COSINE 0x1.69fbe8p-1f
 // How far the curved surface is from the triangle, as a share of the way to the planes that touch it at the corners (Boubekeur
 // and Alexa: *Phong Tessellation*, SIGGRAPH Asia 2008).
 #define SHAPE_FACTOR 0x1.8p-1f
@@ -191,7 +191,7 @@
 // 2^64 over the golden ratio: multiplication by it spreads consecutive numbers far apart (Fibonacci hashing, SplitMix64).
 #define GOLDEN_RATIO 0x9e3779b97f4a7c15ull
 // The reach of the template with the largest radius, in steps; added to offsets before they are packed.
-#define MOST_REACH 16
+#define MAX_REACH 16
 // Lines along x of that template.
 #define TEMPLATE_LINES 1024
 // The opacity of a texel that hides everything, as texels count.
@@ -219,18 +219,18 @@
 // exp(−x) is 0 for larger x.
 #define LARGEST_EXPONENT 0x1.5cp6f
 // A ray goes through so many surfaces.
-#define MOST_THROUGHS 64u
+#define MAX_THROUGHS 64u
 // Where surfaces let rays through, a ray always goes on from this depth if at least this share of what it sees reaches the pixel; others are
 // thinned.
-#define LEAST_THICK_DEEP 0x1p-8f
+#define MIN_THICK_DEEP 0x1p-8f
 // The same for rays that met fewer surfaces: what a single thing of glass shows is smooth, also of bright lamps.
-#define LEAST_THICK 0x1p-12f
+#define MIN_THICK 0x1p-12f
 // How many surfaces a ray met that counts as deep.
 #define DEEP 6u
 // Shares are counted in parts of that: so many bits.
 #define THIN_BITS 16u
 // Less is nothing: one of these parts.
-#define LEAST_THIN 0x1p-24f
+#define MIN_THIN 0x1p-24f
 // By how much the offset of thinning differs between neighbours in a row, as a share of 2³²: 1/ρ, with ρ³ = ρ + 1.
 #define THIN_ACROSS 0xc13fa9a9u
 // In a column: 1/ρ².
@@ -238,14 +238,14 @@
 // From depth to depth: the golden ratio.
 #define THIN_DEEPER 0x9e3779b9u
 // Of surfaces without diffuse reflection it is asked what panes leave of a light if its highlight is at least that much of a pixel.
-#define LEAST_SHOWN 0x1p-18f
+#define MIN_SHOWN 0x1p-18f
 // So many hits of a shadow ray are found at once.
 #define HITS_AT_ONCE 16u
 // The least cosine at which a shadow ray counts as meeting a pane.
-#define LEAST_STEEPNESS 0x1p-6f
+#define MIN_STEEPNESS 0x1p-6f
 // Where all surfaces are opaque, a ray goes on at a surface, mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
 // no code of an image.
-#define LEAST_ONWARD 0x1p-12f
+#define MIN_ONWARD 0x1p-12f
 // Surface points of which a small share reaches the pixel follow fewer samples of lights through panes: levels of that.
 #define FILTER_LEVELS 3u
 // Each level takes this part of the samples of the one before, where at most this part of its share reaches the pixel.
@@ -253,11 +253,11 @@
 // So many of its bits.
 #define LEVEL_SHIFT 2u
 // More samples are not followed at levels beyond the first: one set of rows has them.
-#define MOST_OF_LEVEL 64u
+#define MAX_OF_LEVEL 64u
 // Surfaces that mirror this share at most are faint mirrors: half of a pixel's samples show what is in them.
 #define FAINT_MIRROR 0x1p-3f
 // Mirror rays of a pixel that meet one surface are one if at most this share of what it mirrors reaches the pixel.
-#define MOST_MERGED 0x1p-5f
+#define MAX_MERGED 0x1p-5f
 // Sample points of a light that determine its share above the horizon.
 #define HORIZON_SAMPLES 64u
 // Points of an area light from which its unshadowed light is computed.
@@ -306,19 +306,19 @@
 // The value of the last of these digits.
 #define LAST_DIGIT 0x1p-24f
 // Maximum number of rows of samples that are tested at once.
-#define MOST_ROWS 20u
+#define MAX_ROWS 20u
 // Maximum number of words of their bits.
-#define MOST_WORDS 10u
+#define MAX_WORDS 10u
 // Maximum number of samples in a row, so that its bits are an exact difference of powers of two in 32 bits.
-#define MOST_OF_ROW 30u
+#define MAX_OF_ROW 30u
 // Edge functions below this in size, along a row, count as constant.
-#define LEAST_SLOPE 0x1.ef2d1p-84f
+#define MIN_SLOPE 0x1.ef2d1p-84f
 // Far outside of every emitter: the bound of a row without an edge on that side.
-#define BEYOND 0x1.93e594p99f
+#define UNBOUNDED 0x1.93e594p99f
 // Number of places by which samples are shifted along their rows: sums of a few shifts are exact.
-#define SHIFTS 0x1p16f
+#define SHIFT_STEPS 0x1p16f
 // By how much the boxes of surface points and emitters are enlarged before bounds are derived from them.
-#define GROWN 0x1.0000a8p0f
+#define ENLARGEMENT 0x1.0000a8p0f
 // Least width in pixels of the cells by which surface points are grouped.
 #define CELL_PIXELS 0x1p5f
 // The exponent's last bit in single precision.
@@ -362,9 +362,9 @@
 // The same as `STACK_OF_ROUNDS` for a search that enters instances.
 #define STACK_OF_INSTANCES 128u
 // Number of instances that a node's leaves hold at most.
-#define MOST_HELD 24u
+#define MAX_HELD 24u
 // Maximum number of boxes from which the searches of a tile's items start.
-#define MOST_STARTS 48u
+#define MAX_SEARCH_ROOTS 48u
 // Marks a box that is a leaf.
 #define LEAF_START 0x80000000u
 // The number of such boxes that means "start at the root".
@@ -386,7 +386,7 @@
 // Warps of a block that marks light points or interpolates, an item each.
 #define ITEM_WARPS 4u
 // Maximum number of lights without an area that are interpolated at once.
-#define MOST_LIGHTS 3u
+#define MAX_LIGHTS 3u
 // Surface cells are offset from round coordinates, on which floors and walls tend to lie, by this fraction of their size, along x.
 #define CELL_OFFSET_X 0x1.189374p-3f
 // The same along y.
@@ -398,9 +398,9 @@
 // Added to a level so that it is positive, with seven bits.
 #define LEVEL_BIAS 64
 // The level of all widths that are smaller. Levels of cells differ from those of widths by a few.
-#define LEAST_LEVEL -60
+#define MIN_LEVEL -60
 // The level of all widths that are larger.
-#define MOST_LEVEL 58
+#define MAX_LEVEL 58
 // Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
 #define SURFACE_KINDS 12u
 // How far sites move away from edges, in cells.
@@ -424,17 +424,17 @@
 #define SITE_COSINE 0x1.8p-1f
 // Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
 // sum.
-#define LEAST_SPREAD 0x1.47ae14p-6f
+#define MIN_SPREAD 0x1.47ae14p-6f
 // Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
 #define SITE_RAISED 0x1.333334p-3f
 // They rise no farther than this share of the way to what is above.
 #define SITE_STEP 0x1p-1f
 // They rise no more slowly than by this cosine, unless something is in the way.
-#define LEAST_RISE 0x1.333334p-2f
+#define MIN_RISE 0x1.333334p-2f
 // Bins of directions along each side of the octahedron's square.
 #define BINS_PER_SIDE 8u
 // What tilts a surface changes light by the slope of the cosine, which has no bound at the horizon: smaller cosines count as this.
-#define LEAST_TILT_COSINE 0x1.99999ap-3f
+#define MIN_TILT_COSINE 0x1.99999ap-3f
 // Bins of all directions.
 #define BINS 64u
 // By how many levels coarse cells are coarser than fine ones: they are four times as large.
@@ -671,19 +671,19 @@ static_assert(PLACE_OF(BvhNode, max_y) == 56, "place of BvhNode::max_y");
 static_assert(PLACE_OF(BvhNode, min_z) == 64, "place of BvhNode::min_z");
 static_assert(PLACE_OF(BvhNode, max_z) == 72, "place of BvhNode::max_z");
 
-struct alignas(4) Approach {
+struct alignas(4) RayClamp {
     Vec3 center;
     float radius;
 };
-static_assert(sizeof(Approach) == 16, "size of Approach");
-static_assert(PLACE_OF(Approach, center) == 0, "place of Approach::center");
-static_assert(PLACE_OF(Approach, radius) == 12, "place of Approach::radius");
+static_assert(sizeof(RayClamp) == 16, "size of RayClamp");
+static_assert(PLACE_OF(RayClamp, center) == 0, "place of RayClamp::center");
+static_assert(PLACE_OF(RayClamp, radius) == 12, "place of RayClamp::radius");
 
 struct alignas(8) Bvh {
     const BvhNode *nodes;
     const Triangle *triangles;
     Coverage coverage;
-    Approach approach;
+    RayClamp ray_clamp;
     unsigned node_count;
     unsigned depth;
 };
@@ -691,7 +691,7 @@ static_assert(sizeof(Bvh) == 56, "size of Bvh");
 static_assert(PLACE_OF(Bvh, nodes) == 0, "place of Bvh::nodes");
 static_assert(PLACE_OF(Bvh, triangles) == 8, "place of Bvh::triangles");
 static_assert(PLACE_OF(Bvh, coverage) == 16, "place of Bvh::coverage");
-static_assert(PLACE_OF(Bvh, approach) == 32, "place of Bvh::approach");
+static_assert(PLACE_OF(Bvh, ray_clamp) == 32, "place of Bvh::ray_clamp");
 static_assert(PLACE_OF(Bvh, node_count) == 48, "place of Bvh::node_count");
 static_assert(PLACE_OF(Bvh, depth) == 52, "place of Bvh::depth");
 
@@ -700,7 +700,7 @@ struct alignas(8) InstancedBvh {
     const Triangle *triangles;
     Coverage coverage;
     const Instanced *instances;
-    Approach approach;
+    RayClamp ray_clamp;
     unsigned node_count;
     unsigned depth;
     unsigned instance_count;
@@ -711,7 +711,7 @@ static_assert(PLACE_OF(InstancedBvh, nodes) == 0, "place of InstancedBvh::nodes"
 static_assert(PLACE_OF(InstancedBvh, triangles) == 8, "place of InstancedBvh::triangles");
 static_assert(PLACE_OF(InstancedBvh, coverage) == 16, "place of InstancedBvh::coverage");
 static_assert(PLACE_OF(InstancedBvh, instances) == 32, "place of InstancedBvh::instances");
-static_assert(PLACE_OF(InstancedBvh, approach) == 40, "place of InstancedBvh::approach");
+static_assert(PLACE_OF(InstancedBvh, ray_clamp) == 40, "place of InstancedBvh::ray_clamp");
 static_assert(PLACE_OF(InstancedBvh, node_count) == 56, "place of InstancedBvh::node_count");
 static_assert(PLACE_OF(InstancedBvh, depth) == 60, "place of InstancedBvh::depth");
 static_assert(PLACE_OF(InstancedBvh, instance_count) == 64, "place of InstancedBvh::instance_count");
@@ -724,7 +724,7 @@ struct alignas(8) Grid {
     DVec3 origin;
     Vec3 size;
     unsigned dims[3];
-    Approach approach;
+    RayClamp ray_clamp;
     unsigned triangle_count;
     float margin;
 };
@@ -735,21 +735,21 @@ static_assert(PLACE_OF(Grid, distances) == 16, "place of Grid::distances");
 static_assert(PLACE_OF(Grid, origin) == 24, "place of Grid::origin");
 static_assert(PLACE_OF(Grid, size) == 48, "place of Grid::size");
 static_assert(PLACE_OF(Grid, dims) == 60, "place of Grid::dims");
-static_assert(PLACE_OF(Grid, approach) == 72, "place of Grid::approach");
+static_assert(PLACE_OF(Grid, ray_clamp) == 72, "place of Grid::ray_clamp");
 static_assert(PLACE_OF(Grid, triangle_count) == 88, "place of Grid::triangle_count");
 static_assert(PLACE_OF(Grid, margin) == 92, "place of Grid::margin");
 
 struct alignas(8) BruteForce {
     const Triangle *triangles;
     Coverage coverage;
-    Approach approach;
+    RayClamp ray_clamp;
     unsigned count;
     unsigned spare;
 };
 static_assert(sizeof(BruteForce) == 48, "size of BruteForce");
 static_assert(PLACE_OF(BruteForce, triangles) == 0, "place of BruteForce::triangles");
 static_assert(PLACE_OF(BruteForce, coverage) == 8, "place of BruteForce::coverage");
-static_assert(PLACE_OF(BruteForce, approach) == 24, "place of BruteForce::approach");
+static_assert(PLACE_OF(BruteForce, ray_clamp) == 24, "place of BruteForce::ray_clamp");
 static_assert(PLACE_OF(BruteForce, count) == 40, "place of BruteForce::count");
 static_assert(PLACE_OF(BruteForce, spare) == 44, "place of BruteForce::spare");
 
@@ -1250,13 +1250,13 @@ static_assert(PLACE_OF(BrickTable, keys) == 0, "place of BrickTable::keys");
 static_assert(PLACE_OF(BrickTable, capacity) == 8, "place of BrickTable::capacity");
 static_assert(PLACE_OF(BrickTable, spare) == 12, "place of BrickTable::spare");
 
-struct alignas(8) LitBy {
+struct alignas(8) VisibilityOfLight {
     unsigned long long *bits;
     unsigned short *seen;
 };
-static_assert(sizeof(LitBy) == 16, "size of LitBy");
-static_assert(PLACE_OF(LitBy, bits) == 0, "place of LitBy::bits");
-static_assert(PLACE_OF(LitBy, seen) == 8, "place of LitBy::seen");
+static_assert(sizeof(VisibilityOfLight) == 16, "size of VisibilityOfLight");
+static_assert(PLACE_OF(VisibilityOfLight, bits) == 0, "place of VisibilityOfLight::bits");
+static_assert(PLACE_OF(VisibilityOfLight, seen) == 8, "place of VisibilityOfLight::seen");
 
 struct alignas(8) KeptBy {
     unsigned long long *known;
@@ -2126,7 +2126,7 @@ struct alignas(8) LongTests {
     Scene scene;
     LightMesh mesh;
     UsedPoints points;
-    LitBy lit;
+    VisibilityOfLight lit;
     Sampling sampling;
     Tally tally;
     unsigned light;
@@ -2155,7 +2155,7 @@ struct alignas(8) Cache {
     unsigned *ages;
     unsigned *rows;
     KeptBy kept;
-    LitBy lit;
+    VisibilityOfLight lit;
     unsigned long long *unknown;
     BrickTable from_table;
     unsigned *from_ages;
@@ -2188,7 +2188,7 @@ struct alignas(8) Interpolate {
     const unsigned *masks;
     UsedPoints points;
     const unsigned *slots;
-    const LitBy *lit;
+    const VisibilityOfLight *lit;
     float *share;
     unsigned *used;
     unsigned *fallback_rays;

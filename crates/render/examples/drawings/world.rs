@@ -8,7 +8,8 @@ use lightmesh_render::accel::{Hit, Ray};
 use lightmesh_render::backend::{Backend, Cpu, Wave};
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints, point_bit};
 use lightmesh_render::{
-    Acceleration, CellGroups, Job, LightGroup, LitBy, Masks, PreparedScene, RayList, Sampling, SurfacePoint, Unobserved,
+    Acceleration, CellGroups, LightGroup, Masks, PreparedScene, RayList, RenderContext, Sampling, SurfacePoint,
+    Unobserved, VisibilityOfLight,
 };
 use lightmesh_scene::{Scene, Weight};
 use lightmesh_testkit::SceneDraft;
@@ -53,7 +54,7 @@ pub(crate) fn nodes(mesh: &LightMesh) -> impl Iterator<Item = Vec2> {
 pub(crate) struct World {
     scene: PreparedScene,
     mesh: LightMesh,
-    job: Job<'static>,
+    context: RenderContext<'static>,
     list: RayList,
     hits: Vec<Hit>,
     cells: CellGroups,
@@ -74,21 +75,22 @@ impl World {
     /// Steps 1 and 2 for the surface points below each of `eyes`.
     pub(crate) fn new(scene: &Scene, mesh: LightMesh, eyes: &[Vec2]) -> Result<World, Box<dyn Error>> {
         let scene = PreparedScene::new(scene, &Acceleration::BruteForce, &Unobserved)?;
-        let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
+        let context = RenderContext::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
         let down = |eye: &Vec2| Ray { origin: eye.extend(0.0), direction: Vec3::NEG_Y, t_max: f32::INFINITY };
         let list = RayList {
             rays: eyes.iter().map(down).collect(),
             pixels: (0..eyes.len() as u32).collect(),
             ..RayList::default()
         };
-        let hits = Cpu.primary_rays(&job, &scene, &list)?;
+        let hits = Cpu.primary_rays(&context, &scene, &list)?;
         if !hits.iter().all(Hit::is_some) {
             return Err(format!("{}: there is no surface below some eye", scene.scene.name).into());
         }
-        let wave = Wave { job: &job, scene: &scene, rays: &list, hits: &hits, lights: LightGroup::ALL, parts: 1 };
+        let wave =
+            Wave { context: &context, scene: &scene, rays: &list, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = Cpu.cells(&wave, &mesh)?;
         let masks = Cpu.short_tests(&wave, &cells, &mesh)?;
-        Ok(World { scene, mesh, job, list, hits, cells, masks })
+        Ok(World { scene, mesh, context, list, hits, cells, masks })
     }
 
     /// The half-ball of the surface point below eye number `eye`.
@@ -120,16 +122,18 @@ impl World {
     /// Steps 3 and 4: the used light points in the plane z = 0, and whether each sees the scene's only light.
     pub(crate) fn long_tests(&self) -> Result<Vec<(Vec2, bool)>, Box<dyn Error>> {
         let wave = Wave {
-            job: &self.job,
+            context: &self.context,
             scene: &self.scene,
             rays: &self.list,
             hits: &self.hits,
             lights: LightGroup::ALL,
             parts: 1,
         };
-        let points: UsedPoints = Cpu.light_points(&self.job, &self.cells, &self.masks, &self.mesh)?;
+        let points: UsedPoints = Cpu.light_points(&self.context, &self.cells, &self.masks, &self.mesh)?;
         let lit = Cpu.long_tests(&wave, &points, &self.mesh, None)?;
-        let Some(LitBy::Bits(words)) = lit.lights.first() else { return Err("the world has no point light".into()) };
+        let Some(VisibilityOfLight::Bits(words)) = lit.lights.first() else {
+            return Err("the world has no point light".into());
+        };
         let mut seen = Vec::new();
         for (brick, word) in words.iter().enumerate() {
             for index in points.points(brick) {

@@ -9,10 +9,10 @@ use super::table::{stage_table, stages_on_cpu};
 use super::{Backend, Probed, SeenOf, WaveOf};
 use crate::antialiasing::Antialiasing;
 use crate::bands;
-use crate::cache::{HostTable, Kept};
+use crate::cache::{Cache, HostTable};
 use crate::data::cells::CellGroups;
 use crate::data::items::Items;
-use crate::data::lit::Lit;
+use crate::data::light_point_visibility::LightPointVisibility;
 use crate::data::masks::Masks;
 use crate::data::picture::Picture;
 use crate::data::rays::RayList;
@@ -21,13 +21,13 @@ use crate::data::visibility::Visibility;
 use crate::device::cpu_name;
 use crate::error::RenderError;
 use crate::gathered::{self, Gathering, SurfaceLight};
-use crate::job::Job;
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::plan::Plan;
 use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
+use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
 use crate::stages::primary_rays;
@@ -46,7 +46,7 @@ impl Backend for Cpu {
     type Items = Items;
     type Masks = Masks;
     type Points = UsedPoints;
-    type Lit = Lit;
+    type LightPointVisibility = LightPointVisibility;
     type Visibility = Visibility;
     type Gathered = Vec<Vec3>;
     type SurfaceLight = SurfaceLight;
@@ -67,18 +67,18 @@ impl Backend for Cpu {
 
     fn timed<T>(
         &self,
-        job: &Job,
+        context: &RenderContext,
         stage: Stage,
         work: impl FnOnce() -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
-        job.wall_time(stage, work)
+        context.wall_time(stage, work)
     }
 
     fn check_structure(&self, _: &Acceleration) -> Result<(), RenderError> {
         Ok(())
     }
 
-    fn scene(&self, _: &Job, scene: &PreparedScene, _: Option<u64>) -> Result<PreparedScene, RenderError> {
+    fn scene(&self, _: &RenderContext, scene: &PreparedScene, _: Option<u64>) -> Result<PreparedScene, RenderError> {
         Ok(scene.clone())
     }
 
@@ -123,7 +123,7 @@ impl Backend for Cpu {
     }
 
     fn long_test_count(&self, wave: &WaveOf<Cpu>, points: &UsedPoints) -> usize {
-        points.count() * wave.job.sampling.rays_to(wave.lights())
+        points.count() * wave.context.sampling.rays_to(wave.lights())
     }
 
     stage_table!(stages_on_cpu);
@@ -132,7 +132,7 @@ impl Backend for Cpu {
         Ok(gathered::gather(wave, how, kept))
     }
 
-    fn finish(&self, _: &Job) -> Result<(), RenderError> {
+    fn finish(&self, _: &RenderContext) -> Result<(), RenderError> {
         Ok(())
     }
 

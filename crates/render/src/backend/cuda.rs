@@ -10,25 +10,25 @@ use lightmesh_memory::Budget;
 
 use super::table::{stage_table, stages_on_cuda};
 use super::{
-    Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceItems, DeviceLit, DeviceMasks, DevicePoints, DeviceRays,
-    DeviceSamples, DeviceScene, DeviceVisibility, Probed, SeenOf, WaveOf,
+    Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceItems, DeviceLightPointVisibility, DeviceMasks,
+    DevicePoints, DeviceRays, DeviceSamples, DeviceScene, DeviceVisibility, Probed, SeenOf, WaveOf,
 };
 use crate::antialiasing::Antialiasing;
 use crate::bands;
-use crate::cache::{DeviceTable, Kept};
+use crate::cache::{Cache, DeviceTable};
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::gathered::cuda::{DeviceGathered, DeviceSurfaceLight};
 use crate::gathered::{self, Gathering};
 use crate::gpu;
-use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
 use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
+use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
 use crate::view::View;
@@ -42,7 +42,7 @@ impl<R: Runtime> Backend for Cuda<R> {
     type Items = DeviceItems<R>;
     type Masks = DeviceMasks<R>;
     type Points = DevicePoints<R>;
-    type Lit = DeviceLit<R>;
+    type LightPointVisibility = DeviceLightPointVisibility<R>;
     type Visibility = DeviceVisibility<R>;
     type Gathered = DeviceGathered<R>;
     type SurfaceLight = DeviceSurfaceLight<R>;
@@ -62,7 +62,12 @@ impl<R: Runtime> Backend for Cuda<R> {
     }
 
     /// Uses the device's clock; the time is read when the band is done.
-    fn timed<T>(&self, _: &Job, stage: Stage, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+    fn timed<T>(
+        &self,
+        _: &RenderContext,
+        stage: Stage,
+        work: impl FnOnce() -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
         self.on_device_clock(stage, work)
     }
 
@@ -72,12 +77,12 @@ impl<R: Runtime> Backend for Cuda<R> {
 
     fn scene(
         &self,
-        job: &Job,
+        context: &RenderContext,
         scene: &PreparedScene,
         memory_limit: Option<u64>,
     ) -> Result<DeviceScene<R>, RenderError> {
         self.pool().set_limit(memory_limit);
-        self.device_scene(job, scene)
+        self.device_scene(context, scene)
     }
 
     fn see_through(&self, scene: &DeviceScene<R>) -> Option<SeeThrough<DeviceScene<R>>> {
@@ -129,7 +134,7 @@ impl<R: Runtime> Backend for Cuda<R> {
     }
 
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &DevicePoints<R>) -> usize {
-        points.count * wave.job.sampling.rays_to(&wave.scene.host.scene.lights)
+        points.count * wave.context.sampling.rays_to(&wave.scene.host.scene.lights)
     }
 
     stage_table!(stages_on_cuda);
@@ -143,8 +148,8 @@ impl<R: Runtime> Backend for Cuda<R> {
         gathered::cuda::gather(self, wave, how, kept)
     }
 
-    fn finish(&self, job: &Job) -> Result<(), RenderError> {
-        self.end_band(job)
+    fn finish(&self, context: &RenderContext) -> Result<(), RenderError> {
+        self.end_band(context)
     }
 
     fn visibility(&self, visibility: DeviceVisibility<R>) -> Result<Visibility, RenderError> {

@@ -5,7 +5,7 @@
 
 mod cpu;
 mod cuda;
-pub(crate) mod run;
+pub(crate) mod stage_runner;
 mod table;
 
 use std::ops::Range;
@@ -16,28 +16,28 @@ pub use crate::gpu::DeviceScene;
 pub use crate::gpu::cells::DeviceCells;
 pub use crate::gpu::film::DeviceFilm;
 pub use crate::gpu::items::DeviceItems;
-pub use crate::gpu::lit::DeviceLit;
+pub use crate::gpu::light_point_visibility::DeviceLightPointVisibility;
 pub use crate::gpu::masks::DeviceMasks;
 pub use crate::gpu::points::DevicePoints;
 pub use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceVisibility};
 pub use crate::gpu::samples::DeviceSamples;
 pub use cpu::Cpu;
 #[cfg(doc)]
-use run::Run;
+use stage_runner::StageRunner;
 
 use crate::antialiasing::Antialiasing;
-use crate::cache::{Kept, Table};
+use crate::cache::{Cache, Table};
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::gathered::Gathering;
-use crate::job::Job;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
 use crate::prepared::{PreparedScene, SeeThrough};
 use crate::probes::Probes;
+use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
-pub use crate::shadow::Aim;
+pub use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stages::pixel_samples::SampleRange;
 use crate::view::View;
@@ -47,8 +47,13 @@ use table::{stage_methods, stage_table};
 pub type WaveOf<'a, B> = Wave<'a, <B as Backend>::Scene, <B as Backend>::Rays, <B as Backend>::Hits>;
 
 /// What formula (3) needs, on a backend.
-pub type SeenOf<'a, B> =
-    Seen<'a, <B as Backend>::Cells, <B as Backend>::Masks, <B as Backend>::Points, <B as Backend>::Lit>;
+pub type SeenOf<'a, B> = Seen<
+    'a,
+    <B as Backend>::Cells,
+    <B as Backend>::Masks,
+    <B as Backend>::Points,
+    <B as Backend>::LightPointVisibility,
+>;
 
 /// Probes on a backend: the scene, rays and hits of a wave.
 pub type Probed<B> = (<B as Backend>::Scene, <B as Backend>::Rays, <B as Backend>::Hits);
@@ -72,7 +77,7 @@ pub trait Backend: Sized {
     /// The distinct light points.
     type Points;
     /// What each light point sees of each light.
-    type Lit;
+    type LightPointVisibility;
     /// What each surface point sees of each light.
     type Visibility;
     /// What each surface point receives from its surroundings and from other surfaces.
@@ -96,7 +101,7 @@ pub trait Backend: Sized {
     /// Does `work` and measures its time for `stage`.
     fn timed<T>(
         &self,
-        job: &Job,
+        context: &RenderContext,
         stage: Stage,
         work: impl FnOnce() -> Result<T, RenderError>,
     ) -> Result<T, RenderError>;
@@ -106,7 +111,12 @@ pub trait Backend: Sized {
 
     /// Uploads the scene. Geometry that is already on the device stays. From now on the device allocates at most `memory_limit` bytes of its
     /// memory; `None`: what is free, minus a reserve.
-    fn scene(&self, job: &Job, scene: &PreparedScene, memory_limit: Option<u64>) -> Result<Self::Scene, RenderError>;
+    fn scene(
+        &self,
+        context: &RenderContext,
+        scene: &PreparedScene,
+        memory_limit: Option<u64>,
+    ) -> Result<Self::Scene, RenderError>;
 
     /// Rejects an image for which the host's memory does not suffice, before any of it is allocated.
     fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError>;
@@ -152,8 +162,8 @@ pub trait Backend: Sized {
         kept: &mut Self::SurfaceLight,
     ) -> Result<Self::Gathered, RenderError>;
 
-    /// Waits for all stages of a band, and adds their counts and times to the job.
-    fn finish(&self, job: &Job) -> Result<(), RenderError>;
+    /// Waits for all stages of a band, and adds their counts and times to the context.
+    fn finish(&self, context: &RenderContext) -> Result<(), RenderError>;
 
     /// Copies visibility to the host.
     fn visibility(&self, visibility: Self::Visibility) -> Result<Visibility, RenderError>;

@@ -6,7 +6,7 @@ macro_rules! stage_table {
     ($use:ident) => {
         $use! {
             /// Computes what each ray hits.
-            primary_rays(job: &Job, scene: &Self::Scene, rays: &Self::Rays) -> Self::Hits;
+            primary_rays(context: &RenderContext, scene: &Self::Scene, rays: &Self::Rays) -> Self::Hits;
             /// Computes what some samples of each pixel see, and which pixels are shared: of the wave, whose rays go through the centres, the
             /// hits of these pixels alone are left.
             pixel_samples(
@@ -27,28 +27,28 @@ macro_rules! stage_table {
             /// Tests which light points each surface point sees. Formula (2).
             short_tests(wave: &WaveOf<Self>, cells: &Self::Cells, mesh: &LightMesh) -> Self::Masks;
             /// Collects each light point that is used, once. Formula (7).
-            light_points(job: &Job, cells: &Self::Cells, masks: &Self::Masks, mesh: &LightMesh) -> Self::Points;
+            light_points(context: &RenderContext, cells: &Self::Cells, masks: &Self::Masks, mesh: &LightMesh) -> Self::Points;
             /// Tests what each light point sees of each light. Cached results are not tested again; new ones are cached.
             long_tests(
                 wave: &WaveOf<Self>,
                 points: &Self::Points,
                 mesh: &LightMesh,
-                kept: Option<&mut Kept<Self::Table>>
-            ) -> Self::Lit;
+                cache: Option<&mut Cache<Self::Table>>
+            ) -> Self::LightPointVisibility;
             /// Computes the weighted mean over the light points that a surface point uses. Formula (3).
             interpolate(wave: &WaveOf<Self>, seen: &SeenOf<Self>) -> Self::Visibility;
             /// Casts shadow rays from each surface point: one to the centre of each light, or many distributed over it.
-            shadow_rays(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
+            shadow_rays(wave: &WaveOf<Self>, target: &ShadowTarget) -> Self::Visibility;
             /// Finds which samples of each light each surface point sees, by what stands between the two: the reference.
-            area_shadows(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
+            area_shadows(wave: &WaveOf<Self>, target: &ShadowTarget) -> Self::Visibility;
             /// Casts one ray from each surface point to each light, and all that `shadow_rays` casts where neighbours disagree.
-            adaptive_shadows(wave: &WaveOf<Self>, aim: &Aim) -> Self::Visibility;
+            adaptive_shadows(wave: &WaveOf<Self>, target: &ShadowTarget) -> Self::Visibility;
             /// Puts surface points that are close together into items.
             items(wave: &WaveOf<Self>) -> Self::Items;
             /// Finds the same as `area_shadows`, by what stands between an item and the light.
-            occluder_lists(wave: &WaveOf<Self>, items: &Self::Items, aim: &Aim) -> Self::Visibility;
+            occluder_lists(wave: &WaveOf<Self>, items: &Self::Items, target: &ShadowTarget) -> Self::Visibility;
             /// Multiplies visibility by the transmittance of the surfaces of `panes` that are not opaque.
-            filters(wave: &WaveOf<Self>, panes: &Self::Scene, aim: &Aim, visibility: Self::Visibility) -> Self::Visibility;
+            filters(wave: &WaveOf<Self>, panes: &Self::Scene, target: &ShadowTarget, visibility: Self::Visibility) -> Self::Visibility;
             /// Adds the radiance of each ray to its pixel. Formula (1).
             shade(
                 wave: &WaveOf<Self>,

@@ -5,12 +5,12 @@ use bytemuck::Zeroable;
 use lightmesh_kernels::{Buffer, Kernel, Runtime};
 use lightmesh_layout::Out;
 use lightmesh_layout::constants::POINT_BITS;
-use lightmesh_layout::mesh::{BrickTable, KeptBy, LitBy};
+use lightmesh_layout::mesh::{BrickTable, KeptBy, VisibilityOfLight};
 use lightmesh_layout::stages::Cache;
 use rayon::prelude::*;
 
 use super::stored::{POINTS, Readable, ReadableAnswers, Stored, StoredAnswers, StoredColumn, bytes_of_brick};
-use super::{Allowance, Noticed, Seen, Table};
+use super::{Allowance, ColumnKey, Invalidation, Table};
 use crate::error::RenderError;
 use crate::gathered::cuda::DeviceSurfaceLight;
 use crate::gathered::saved::SavedLight;
@@ -45,7 +45,7 @@ struct Bricks<R: Runtime> {
 
 /// The known values for one light, by slot.
 struct Column<R: Runtime> {
-    seen: Seen,
+    seen: ColumnKey,
     known: Buffer<R, u64>,
     answers: Answers<R>,
     /// Number of light points whose value is known.
@@ -90,7 +90,7 @@ impl<R: Runtime> Table for DeviceTable<R> {
     }
 
     /// On the host, by the same rule to the bit as its own table: a few bytes for each brick go back and forth.
-    fn forget(&mut self, noticed: &Noticed) -> Result<(), RenderError> {
+    fn evict(&mut self, invalidation: &Invalidation) -> Result<(), RenderError> {
         // What was never uploaded is of no image.
         self.stored = None;
         let Some(bricks) = &self.bricks else { return Ok(()) };
@@ -99,19 +99,19 @@ impl<R: Runtime> Table for DeviceTable<R> {
             let kind = column.seen.kind();
             let mut known = column.known.read()?;
             // Keys are stored increased by 1: 0 is an empty slot.
-            let is_noticed = |&slot: &usize| known[slot] != 0 && noticed.by(keys[slot] - 1, kind);
-            let forgotten: Vec<usize> = (0..keys.len()).into_par_iter().filter(is_noticed).collect();
-            if forgotten.is_empty() {
+            let is_invalidated = |&slot: &usize| known[slot] != 0 && invalidation.by(keys[slot] - 1, kind);
+            let evicted: Vec<usize> = (0..keys.len()).into_par_iter().filter(is_invalidated).collect();
+            if evicted.is_empty() {
                 continue;
             }
-            for &slot in &forgotten {
+            for &slot in &evicted {
                 column.count -= u64::from(known[slot].count_ones());
                 known[slot] = 0;
             }
             column.known.write(&known)?;
             if let Answers::Bits(bits) = &column.answers {
                 let mut words = bits.read()?;
-                forgotten.iter().for_each(|&slot| words[slot] = 0);
+                evicted.iter().for_each(|&slot| words[slot] = 0);
                 bits.write(&words)?;
             }
         }
@@ -155,13 +155,13 @@ impl<R: Runtime> DeviceTable<R> {
         &mut self,
         cuda: &Cuda<R>,
         points: &DevicePoints<R>,
-        lights: Vec<Seen>,
+        lights: Vec<ColumnKey>,
     ) -> Result<Option<Buffer<R, u32>>, RenderError> {
         let allowance = self.allowance;
         let rows = cuda.pool().room("light points' places in the cache", points.capacity())?;
         let record = Cache { points: points.record(), rows: rows.output(), ..Cache::zeroed() };
         if let Some(mut stored) = self.stored.take() {
-            let lights: Vec<Seen> = stored.columns.iter().map(|column| column.seen.clone()).collect();
+            let lights: Vec<ColumnKey> = stored.columns.iter().map(|column| column.seen.clone()).collect();
             let mut capacity = (2 * stored.bricks.len()).next_power_of_two();
             while capacity > points.capacity() && !self.is_allowed(capacity, &lights) {
                 capacity /= 2;
@@ -213,7 +213,7 @@ impl<R: Runtime> DeviceTable<R> {
     }
 
     /// Whether a table of this many slots may be held.
-    fn is_allowed(&self, capacity: usize, lights: &[Seen]) -> bool {
+    fn is_allowed(&self, capacity: usize, lights: &[ColumnKey]) -> bool {
         let bytes = || {
             let columns: usize = lights.iter().map(bytes_of_brick).sum();
             (capacity * (size_of::<u64>() + size_of::<u32>() + columns)) as u64
@@ -252,7 +252,7 @@ impl<R: Runtime> DeviceTable<R> {
     }
 
     /// Provides a column for each light.
-    fn hold(&mut self, cuda: &Cuda<R>, lights: Vec<Seen>) -> Result<(), RenderError> {
+    fn hold(&mut self, cuda: &Cuda<R>, lights: Vec<ColumnKey>) -> Result<(), RenderError> {
         let capacity = self.capacity();
         self.columns.truncate(lights.len());
         for (index, seen) in lights.into_iter().enumerate() {
@@ -316,7 +316,7 @@ impl<R: Runtime> DeviceTable<R> {
         cuda: &Cuda<R>,
         light: usize,
         rows: &Buffer<R, u32>,
-        (unknown, found): (&DevicePoints<R>, LitBy),
+        (unknown, found): (&DevicePoints<R>, VisibilityOfLight),
     ) -> Result<(), RenderError> {
         let column = &mut self.columns[light];
         let record = Cache { lit: found, ..column.of(unknown, rows) };
@@ -326,12 +326,12 @@ impl<R: Runtime> DeviceTable<R> {
     }
 
     /// What all points of an image see of a light.
-    pub(crate) fn recall(
+    pub(crate) fn lookup(
         &self,
         cuda: &Cuda<R>,
         light: usize,
         rows: &Buffer<R, u32>,
-        (points, lit): (&DevicePoints<R>, LitBy),
+        (points, lit): (&DevicePoints<R>, VisibilityOfLight),
     ) -> Result<(), RenderError> {
         let record = Cache { lit, ..self.columns[light].of(points, rows) };
         cuda.launch(RECALL, slots(points.capacity()), &record)
@@ -365,7 +365,7 @@ impl<R: Runtime> Bricks<R> {
 }
 
 impl<R: Runtime> Column<R> {
-    fn new(cuda: &Cuda<R>, seen: Seen, capacity: usize) -> Result<Column<R>, RenderError> {
+    fn new(cuda: &Cuda<R>, seen: ColumnKey, capacity: usize) -> Result<Column<R>, RenderError> {
         let known = cuda.pool().zeros("known light points", capacity)?;
         let answers = if seen.is_share() {
             Answers::Shares(cuda.pool().room("known shares of a light", capacity << POINT_BITS)?)
@@ -438,7 +438,7 @@ fn by_slot<T: Copy + Default>(values: &[T], slots: &[usize], capacity: usize) ->
 
 /// The values of a column on the host, by slot.
 struct Downloaded<'a> {
-    seen: &'a Seen,
+    seen: &'a ColumnKey,
     known: Vec<u64>,
     answers: DownloadedAnswers,
 }

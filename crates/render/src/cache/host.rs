@@ -6,8 +6,8 @@ use std::convert::Infallible;
 use rayon::prelude::*;
 
 use super::stored::{POINTS, Readable, ReadableAnswers, SLACK, Stored, StoredAnswers, StoredColumn, bytes_of_rows};
-use super::{Allowance, Noticed, Seen, Table};
-use crate::data::lit::LitBy;
+use super::{Allowance, ColumnKey, Invalidation, Table};
+use crate::data::light_point_visibility::VisibilityOfLight;
 use crate::gathered::SurfaceLight;
 use crate::gathered::saved::SavedLight;
 use crate::light_mesh::{BrickKey, bits};
@@ -26,7 +26,7 @@ pub struct HostTable {
 
 /// The known values for one light, by row.
 struct Column {
-    seen: Seen,
+    seen: ColumnKey,
     /// The light points whose value is known.
     known: Vec<u64>,
     answers: Answers,
@@ -65,12 +65,12 @@ impl Table for HostTable {
         (rows + columns) as u64
     }
 
-    fn forget(&mut self, noticed: &Noticed) -> Result<(), Infallible> {
+    fn evict(&mut self, invalidation: &Invalidation) -> Result<(), Infallible> {
         for Column { seen, known, answers } in &mut self.columns {
             let is_known = |row: usize| known.get(row).is_some_and(|&points| points != 0);
-            let noticing =
-                self.rows.par_iter().filter(|&(&brick, &row)| is_known(row) && noticed.by(brick, seen.kind()));
-            for row in noticing.map(|(_, &row)| row).collect::<Vec<usize>>() {
+            let invalidated =
+                self.rows.par_iter().filter(|&(&brick, &row)| is_known(row) && invalidation.by(brick, seen.kind()));
+            for row in invalidated.map(|(_, &row)| row).collect::<Vec<usize>>() {
                 known[row] = 0;
                 if let Answers::Bits(words) = answers {
                     words[row] = 0;
@@ -103,7 +103,7 @@ impl HostTable {
     /// The rows of some bricks, which are added where they are new, and a column for each light. Values for another light, or for
     /// other samples, are discarded. `None` if these bricks alone would take more memory than is allowed.
     #[doc(hidden)]
-    pub fn admit(&mut self, bricks: &[BrickKey], lights: Vec<Seen>) -> Option<Vec<usize>> {
+    pub fn admit(&mut self, bricks: &[BrickKey], lights: Vec<ColumnKey>) -> Option<Vec<usize>> {
         self.columns.truncate(lights.len());
         for (index, seen) in lights.into_iter().enumerate() {
             match self.columns.get_mut(index) {
@@ -149,19 +149,19 @@ impl HostTable {
         let mut order: Vec<usize> = (0..self.ages.len()).collect();
         order.sort_unstable_by_key(|&row| (u32::MAX - self.ages[row], row));
         order.truncate(left);
-        self.keep(order);
+        self.retain(order);
         true
     }
 
     /// Moves some rows to the beginning, and removes the others.
-    fn keep(&mut self, mut kept: Vec<usize>) {
+    fn retain(&mut self, mut kept: Vec<usize>) {
         kept.sort_unstable();
         let mut moved = vec![None; self.ages.len()];
         kept.iter().enumerate().for_each(|(to, &from)| moved[from] = Some(to));
         let rows = std::mem::take(&mut self.rows);
         self.rows = rows.into_iter().filter_map(|(brick, row)| Some((brick, moved[row]?))).collect();
         self.ages = kept.iter().map(|&row| self.ages[row]).collect();
-        self.columns.iter_mut().for_each(|column| column.keep(&kept));
+        self.columns.iter_mut().for_each(|column| column.retain(&kept));
     }
 
     /// Number of rays from each light point to a light.
@@ -178,13 +178,13 @@ impl HostTable {
 
     /// Stores the results for the points of `asked`, by brick.
     #[doc(hidden)]
-    pub fn learn(&mut self, light: usize, rows: &[usize], asked: &[u64], found: &LitBy) {
+    pub fn learn(&mut self, light: usize, rows: &[usize], asked: &[u64], found: &VisibilityOfLight) {
         let column = &mut self.columns[light];
         match (&mut column.answers, found) {
-            (Answers::Bits(kept), LitBy::Bits(words)) => {
+            (Answers::Bits(kept), VisibilityOfLight::Bits(words)) => {
                 rows.iter().zip(words).for_each(|(&row, word)| kept[row] |= word);
             }
-            (Answers::Shares(kept), LitBy::Share { seen, .. }) => {
+            (Answers::Shares(kept), VisibilityOfLight::Share { seen, .. }) => {
                 let points = rows.iter().zip(asked).flat_map(|(&row, &asked)| bits(asked).map(move |bit| (row, bit)));
                 points.zip(seen).for_each(|((row, bit), &share)| kept[row][bit as usize] = share);
             }
@@ -196,21 +196,21 @@ impl HostTable {
 
     /// What the points of `used`, by brick, see of a light.
     #[doc(hidden)]
-    pub fn recall(&self, light: usize, rows: &[usize], used: &[u64]) -> LitBy {
+    pub fn lookup(&self, light: usize, rows: &[usize], used: &[u64]) -> VisibilityOfLight {
         let column = &self.columns[light];
         let places = rows.iter().zip(used);
         match &column.answers {
-            Answers::Bits(kept) => LitBy::Bits(places.map(|(&row, used)| kept[row] & used).collect()),
+            Answers::Bits(kept) => VisibilityOfLight::Bits(places.map(|(&row, used)| kept[row] & used).collect()),
             Answers::Shares(kept) => {
                 let shares = places.flat_map(|(&row, &used)| bits(used).map(move |bit| kept[row][bit as usize]));
-                LitBy::Share { seen: shares.collect(), samples: column.seen.samples() }
+                VisibilityOfLight::Share { seen: shares.collect(), samples: column.seen.samples() }
             }
         }
     }
 }
 
 impl Column {
-    fn new(seen: Seen) -> Column {
+    fn new(seen: ColumnKey) -> Column {
         let answers = if seen.is_share() { Answers::Shares(Vec::new()) } else { Answers::Bits(Vec::new()) };
         Column { seen, known: Vec::new(), answers }
     }
@@ -235,7 +235,7 @@ impl Column {
         Readable { seen: &self.seen, known: &self.known, answers }
     }
 
-    fn keep(&mut self, kept: &[usize]) {
+    fn retain(&mut self, kept: &[usize]) {
         // A new column has no rows yet.
         let kept = kept.iter().copied().take_while(|&row| row < self.known.len());
         match &mut self.answers {

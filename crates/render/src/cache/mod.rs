@@ -7,12 +7,12 @@
 //! A backend keeps a [`Table`] for each geometry: a row for each brick, a column for each light. What all
 //! backends keep goes to the same [files](file), and comes from there, by way of one [form](content).
 
+pub(crate) mod column_key;
 pub(crate) mod content;
 mod device;
 pub(crate) mod file;
 mod host;
-pub(crate) mod noticed;
-pub(crate) mod seen;
+pub(crate) mod invalidation;
 pub(crate) mod stored;
 
 use std::path::{Path, PathBuf};
@@ -21,12 +21,12 @@ use std::sync::{Arc, Weak};
 use lightmesh_kernels::Driver;
 use lightmesh_memory::Budget;
 
+pub(crate) use column_key::ColumnKey;
 pub(crate) use content::{Content, Places, SavedGathered, Section};
 pub use device::DeviceTable;
 pub use file::{MeshFault, MeshFileError, MeshSaveError, SavedMesh};
 pub use host::HostTable;
-pub(crate) use noticed::Noticed;
-pub(crate) use seen::Seen;
+pub(crate) use invalidation::Invalidation;
 use stored::Stored;
 
 use crate::error::RenderError;
@@ -43,9 +43,9 @@ use crate::prepared::{PreparedGeometry, PreparedScene};
 /// may change with the camera.
 #[derive(Default)]
 pub struct MeshCache {
-    host: Kept<HostTable>,
+    host: Cache<HostTable>,
     /// What is kept in the memory of CUDA devices, by the device's id.
-    devices: Vec<(u64, Kept<DeviceTable<Driver>>)>,
+    devices: Vec<(u64, Cache<DeviceTable<Driver>>)>,
     /// What was read from a file, until it is asked for where images are rendered.
     read: Content,
     /// The file.
@@ -78,8 +78,8 @@ impl MeshCache {
     pub fn save(&self, path: impl AsRef<Path>, scene: &PreparedScene) -> Result<Option<SavedMesh>, MeshSaveError> {
         let path = path.as_ref();
         let mut content = self.host.content(path, scene)?;
-        for (_, kept) in &self.devices {
-            content.append(&mut kept.content(path, scene)?);
+        for (_, cache) in &self.devices {
+            content.append(&mut cache.content(path, scene)?);
         }
         content.append(&mut self.read.clone());
         file::save(path, scene, content)
@@ -88,31 +88,31 @@ impl MeshCache {
     /// Why light points, or gathered light, of the file that the cache was loaded from could not be used, if that turned out with an image. Says
     /// so once; to be asked until there is nothing more.
     pub fn refused(&mut self) -> Option<MeshFileError> {
-        let on_devices = self.devices.iter_mut().find_map(|(_, kept)| kept.refused.pop());
+        let on_devices = self.devices.iter_mut().find_map(|(_, cache)| cache.refused.pop());
         let fault = self.host.refused.pop().or(on_devices)?;
         Some(MeshFileError { path: self.file.clone(), fault })
     }
 
     /// Number of sites whose gathered light was read from a file and not yet asked for.
     pub fn sites_read(&self) -> u64 {
-        let on_devices: u64 = self.devices.iter().map(|(_, kept)| kept.read.sites()).sum();
+        let on_devices: u64 = self.devices.iter().map(|(_, cache)| cache.read.sites()).sum();
         self.read.sites() + self.host.read.sites() + on_devices
     }
 
     /// Number of cached values: light points times lights.
     pub fn len(&self) -> u64 {
-        self.read.len() + self.host.len() + self.devices.iter().map(|(_, kept)| kept.len()).sum::<u64>()
+        self.read.len() + self.host.len() + self.devices.iter().map(|(_, cache)| cache.len()).sum::<u64>()
     }
 
     /// Whether the cache is empty.
     pub fn is_empty(&self) -> bool {
-        self.read.is_empty() && self.host.is_empty() && self.devices.iter().all(|(_, kept)| kept.is_empty())
+        self.read.is_empty() && self.host.is_empty() && self.devices.iter().all(|(_, cache)| cache.is_empty())
     }
 
     /// Bytes used, on the host and on devices.
     pub fn memory(&self) -> u64 {
         let read = self.read.memory_of_points() + self.read.memory_of_gathered();
-        read + self.host.memory() + self.devices.iter().map(|(_, kept)| kept.memory()).sum::<u64>()
+        read + self.host.memory() + self.devices.iter().map(|(_, cache)| cache.memory()).sum::<u64>()
     }
 
     /// Empties the cache and frees its memory.
@@ -123,21 +123,21 @@ impl MeshCache {
     }
 
     /// The part that is kept on the host.
-    pub(crate) fn host(&mut self) -> &mut Kept<HostTable> {
+    pub(crate) fn host(&mut self) -> &mut Cache<HostTable> {
         self.host.read.append(&mut self.read);
         &mut self.host
     }
 
     /// The part that is kept on a device.
-    pub(crate) fn device(&mut self, id: u64) -> &mut Kept<DeviceTable<Driver>> {
+    pub(crate) fn device(&mut self, id: u64) -> &mut Cache<DeviceTable<Driver>> {
         let known = self.devices.iter().position(|(device, _)| *device == id);
         let index = known.unwrap_or_else(|| {
-            self.devices.push((id, Kept::default()));
+            self.devices.push((id, Cache::default()));
             self.devices.len() - 1
         });
-        let kept = &mut self.devices[index].1;
-        kept.read.append(&mut self.read);
-        kept
+        let cache = &mut self.devices[index].1;
+        cache.read.append(&mut self.read);
+        cache
     }
 }
 
@@ -164,8 +164,8 @@ pub trait Table: Default {
     /// Bytes used in the backend's memory.
     fn memory(&self) -> u64;
 
-    /// Forgets the values that `noticed` may have changed. After an error the table must be dropped.
-    fn forget(&mut self, noticed: &Noticed) -> Result<(), Self::Error>;
+    /// Evicts the values that `invalidation` may have changed. After an error the table must be dropped.
+    fn evict(&mut self, invalidation: &Invalidation) -> Result<(), Self::Error>;
 
     /// Sets what holds until the next image.
     fn allow(&mut self, allowance: Allowance);
@@ -190,7 +190,7 @@ pub struct Allowance {
 const PART_KEPT: u64 = 4;
 
 /// The tables of a backend: one for each geometry that is alive, for the lattice that it was last used with.
-pub struct Kept<T: Table> {
+pub struct Cache<T: Table> {
     tables: Vec<Known<T>>,
     gathered: Vec<Gathered<T::Light>>,
     /// What was read from a file, until its geometry is asked for.
@@ -221,9 +221,9 @@ impl<L> Gathered<L> {
     }
 }
 
-impl<T: Table> Default for Kept<T> {
-    fn default() -> Kept<T> {
-        Kept {
+impl<T: Table> Default for Cache<T> {
+    fn default() -> Cache<T> {
+        Cache {
             tables: Vec::new(),
             gathered: Vec::new(),
             read: Content::default(),
@@ -233,7 +233,7 @@ impl<T: Table> Default for Kept<T> {
     }
 }
 
-impl<T: Table> Kept<T> {
+impl<T: Table> Cache<T> {
     /// Number of cached values: light points times lights.
     pub fn len(&self) -> u64 {
         self.tables.iter().map(|known| known.table.len()).sum::<u64>() + self.read.len()
@@ -259,7 +259,7 @@ impl<T: Table> Kept<T> {
 
     /// Begins an image that has light points, if `left` bytes are left for it: bricks that were not used for the longest give way if what is
     /// known takes more than its part. Returns the bytes that tables may still take.
-    pub(crate) fn begin(&mut self, left: Option<u64>) -> u64 {
+    pub(crate) fn reserve(&mut self, left: Option<u64>) -> u64 {
         let held = self.memory_of_tables();
         let most = left.map(|left| (left + held) / PART_KEPT);
         self.allowance = Allowance { image: self.allowance.image + 1, most };
@@ -275,8 +275,8 @@ impl<T: Table> Kept<T> {
     ///
     /// # Errors
     /// As [`MeshCache::load`].
-    pub fn load(path: impl AsRef<Path>, scene: &PreparedScene, budget: Budget) -> Result<Kept<T>, MeshFileError> {
-        Ok(Kept { read: file::load(path.as_ref(), scene, budget)?, ..Kept::default() })
+    pub fn load(path: impl AsRef<Path>, scene: &PreparedScene, budget: Budget) -> Result<Cache<T>, MeshFileError> {
+        Ok(Cache { read: file::load(path.as_ref(), scene, budget)?, ..Cache::default() })
     }
 
     /// [`MeshCache::save`] for one backend.
@@ -334,7 +334,7 @@ impl<T: Table> Kept<T> {
     }
 
     /// Keeps what surfaces gather.
-    pub(crate) fn keep_gathered(&mut self, scene: &PreparedScene, sources: Sources, light: T::Light) {
+    pub(crate) fn insert_gathered(&mut self, scene: &PreparedScene, sources: Sources, light: T::Light) {
         self.gathered.push(Gathered { geometry: Arc::downgrade(&scene.geometry), sources, light });
     }
 
@@ -348,8 +348,10 @@ impl<T: Table> Kept<T> {
         let index = match self.tables.iter().position(same) {
             Some(index) => index,
             None => {
-                let table =
-                    self.moved(scene, lattice, &places)?.or_else(|| self.restored(scene, &places)).unwrap_or_default();
+                let table = self
+                    .deformed(scene, lattice, &places)?
+                    .or_else(|| self.restored(scene, &places))
+                    .unwrap_or_default();
                 self.tables.push(Known { geometry: Arc::downgrade(&scene.geometry), places, table });
                 self.tables.len() - 1
             }
@@ -377,12 +379,12 @@ impl<T: Table> Kept<T> {
     }
 
     /// The table of geometry in which things have moved since, if its light points are at the same places.
-    fn moved(&mut self, scene: &PreparedScene, lattice: &Lattice, places: &Places) -> Result<Option<T>, T::Error> {
-        let Some(moved) = &scene.geometry.moved else { return Ok(None) };
-        let was = |known: &Known<T>| known.geometry.ptr_eq(&moved.before) && known.places == *places;
+    fn deformed(&mut self, scene: &PreparedScene, lattice: &Lattice, places: &Places) -> Result<Option<T>, T::Error> {
+        let Some(deformation) = &scene.geometry.deformation else { return Ok(None) };
+        let was = |known: &Known<T>| known.geometry.ptr_eq(&deformation.before) && known.places == *places;
         let Some(index) = self.tables.iter().position(was) else { return Ok(None) };
         let mut table = self.tables.swap_remove(index).table;
-        table.forget(&Noticed::new(&moved.boxes, lattice, &scene.geometry))?;
+        table.evict(&Invalidation::new(&deformation.boxes, lattice, &scene.geometry))?;
         Ok(Some(table))
     }
 }

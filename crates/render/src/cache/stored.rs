@@ -3,7 +3,7 @@
 
 use lightmesh_layout::constants::POINT_BITS;
 
-use super::seen::Seen;
+use super::column_key::ColumnKey;
 use crate::light_mesh::{BrickKey, bits};
 
 /// Number of light points in a brick.
@@ -11,7 +11,7 @@ pub(super) const POINTS: usize = 1 << POINT_BITS;
 
 /// Bytes that a table takes at most for so many bricks and these lights. Its keys grow to twice of what they hold, while the old ones are
 /// still there; columns, one after the other, by a `SLACK`th.
-pub fn bytes_of_rows<'a>(bricks: usize, lights: impl Iterator<Item = &'a Seen>) -> u64 {
+pub fn bytes_of_rows<'a>(bricks: usize, lights: impl Iterator<Item = &'a ColumnKey>) -> u64 {
     let (sum, largest) =
         lights.map(bytes_of_brick).fold((0, 0), |(sum, largest), column| (sum + column, column.max(largest)));
     let keys = 3 * (size_of::<(BrickKey, usize)>() + size_of::<u32>());
@@ -19,7 +19,7 @@ pub fn bytes_of_rows<'a>(bricks: usize, lights: impl Iterator<Item = &'a Seen>) 
 }
 
 /// Bytes of a brick in the column of a light: which of its light points are known, and what they see.
-pub(super) fn bytes_of_brick(seen: &Seen) -> usize {
+pub(super) fn bytes_of_brick(seen: &ColumnKey) -> usize {
     size_of::<u64>() + if seen.is_share() { POINTS * size_of::<u16>() } else { size_of::<u64>() }
 }
 
@@ -41,7 +41,7 @@ pub struct Stored {
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredColumn {
     /// What determines the values.
-    pub seen: Seen,
+    pub seen: ColumnKey,
     /// The light points whose value is known, by brick.
     pub known: Vec<u64>,
     /// The values.
@@ -137,7 +137,7 @@ impl StoredColumn {
 
 /// The column of a table, by place.
 pub(super) struct Readable<'a> {
-    pub(super) seen: &'a Seen,
+    pub(super) seen: &'a ColumnKey,
     pub(super) known: &'a [u64],
     pub(super) answers: ReadableAnswers<'a>,
 }

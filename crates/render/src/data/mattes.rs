@@ -1,6 +1,6 @@
 //! What the samples of pixels see, by object and by material, counted for mattes.
 
-use lightmesh_image::{MOST_RANKS, Matte};
+use lightmesh_image::{MAX_RANKS, Matte};
 use rayon::prelude::*;
 
 /// The most objects or materials of a pixel whose samples are counted.
@@ -24,7 +24,7 @@ pub(crate) fn slots_of(samples: u32) -> usize {
 
 /// The ranks of a matte of a pixel of `samples` samples.
 pub(crate) fn ranks_of(samples: u32) -> usize {
-    MOST_RANKS.min(samples as usize)
+    MAX_RANKS.min(samples as usize)
 }
 
 impl Counted {

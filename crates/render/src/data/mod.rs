@@ -5,8 +5,8 @@
 
 pub(crate) mod cells;
 pub(crate) mod items;
+pub(crate) mod light_point_visibility;
 pub(crate) mod lights;
-pub(crate) mod lit;
 pub(crate) mod masks;
 pub(crate) mod mattes;
 pub(crate) mod picture;

@@ -111,8 +111,8 @@ DEVICE bool is_mirrored(const Rays &rays, unsigned ray) { return rays.depth > th
 // The number of a ray among those of its pixel: by the pixel's sample that it goes through, then by its direction from a rough mirror.
 DEVICE unsigned number_in_pixel(const Rays &rays, unsigned ray) {
     const unsigned one = sample_of(rays, ray) & ((1u << DIRECTION_SHIFT) - 1), sample = one > 0 ? one - 1 : 0;
-    const unsigned direction = sample_of(rays, ray) >> DIRECTION_SHIFT & (MOST_DIRECTIONS - 1);
-    return is_mirrored(rays, ray) ? sample * MOST_DIRECTIONS + direction : sample;
+    const unsigned direction = sample_of(rays, ray) >> DIRECTION_SHIFT & (MAX_DIRECTIONS - 1);
+    return is_mirrored(rays, ray) ? sample * MAX_DIRECTIONS + direction : sample;
 }
 
 // The key that distinguishes the random patterns of two surface points: the pixel, its sample, the surfaces on the way that let it through, and

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{
-    DIRECTION_SHIFT, FADE_SHIFT, MOST_DIRECTIONS, PARTS_OF_FADE, THROUGHS_MASK, THROUGHS_SHIFT,
+    DIRECTION_SHIFT, FADE_SHIFT, MAX_DIRECTIONS, PARTS_OF_FADE, THROUGHS_MASK, THROUGHS_SHIFT,
 };
 use lightmesh_trace::accel::{Hit, Ray, Triangle};
 
@@ -93,8 +93,8 @@ impl RayList {
     /// The number of a ray among those of its pixel: by the pixel's sample that it goes through, then by its direction from a rough mirror.
     pub(crate) fn number_in_pixel(&self, ray: usize) -> u32 {
         let sample = (self.sample(ray) & ((1 << DIRECTION_SHIFT) - 1)).saturating_sub(1);
-        let direction = self.sample(ray) >> DIRECTION_SHIFT & (MOST_DIRECTIONS - 1);
-        if self.is_mirrored(ray) { sample * MOST_DIRECTIONS + direction } else { sample }
+        let direction = self.sample(ray) >> DIRECTION_SHIFT & (MAX_DIRECTIONS - 1);
+        if self.is_mirrored(ray) { sample * MAX_DIRECTIONS + direction } else { sample }
     }
 
     /// The same as [`sample`](RayList::sample), of a ray that shows all of lights.

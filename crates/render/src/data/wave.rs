@@ -6,19 +6,19 @@ use lightmesh_scene::Lights;
 use lightmesh_trace::accel::Hit;
 
 use super::cells::CellGroups;
+use super::light_point_visibility::LightPointVisibility;
 use super::lights::LightGroup;
-use super::lit::Lit;
 use super::masks::Masks;
 use super::rays::{RayList, surface_point_of};
-use crate::job::{Job, Sampling};
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::prepared::PreparedScene;
+use crate::render_context::{RenderContext, Sampling};
 use crate::surface::SurfacePoint;
 
 /// A wave of rays, those of the camera or of one bounce, with their hits and everything that all stages need.
 pub struct Wave<'a, Scene, Rays, Hits> {
     /// Settings, counts and progress of the image.
-    pub job: &'a Job<'a>,
+    pub context: &'a RenderContext<'a>,
     /// The scene, in the device's memory.
     pub scene: &'a Scene,
     /// The rays.
@@ -40,7 +40,7 @@ impl<Scene, Rays, Hits> Clone for Wave<'_, Scene, Rays, Hits> {
 impl<Scene, Rays, Hits> Wave<'_, Scene, Rays, Hits> {
     /// How each of its surface points samples lights.
     pub(crate) fn sampling(&self) -> Sampling {
-        let all = self.job.sampling;
+        let all = self.context.sampling;
         // A single sample would be the centre.
         let least = all.samples.min(2);
         Sampling { samples: (all.samples / self.parts).max(least), ..all }
@@ -50,7 +50,7 @@ impl<Scene, Rays, Hits> Wave<'_, Scene, Rays, Hits> {
 impl<Scene, Rays, Hits> Copy for Wave<'_, Scene, Rays, Hits> {}
 
 /// The results of the light mesh method for a wave, as formula (3) needs them.
-pub struct Seen<'a, Cells, Masks, Points, Lit> {
+pub struct Seen<'a, Cells, Masks, Points, LightPointVisibility> {
     /// The light mesh.
     pub mesh: &'a LightMesh,
     /// Surface points by cell.
@@ -60,11 +60,11 @@ pub struct Seen<'a, Cells, Masks, Points, Lit> {
     /// Each used light point.
     pub points: &'a Points,
     /// Which lights each of these sees.
-    pub lit: &'a Lit,
+    pub lit: &'a LightPointVisibility,
 }
 
 /// [`Seen`] on the host.
-pub(crate) type HostSeen<'a> = Seen<'a, CellGroups, Masks, UsedPoints, Lit>;
+pub(crate) type HostSeen<'a> = Seen<'a, CellGroups, Masks, UsedPoints, LightPointVisibility>;
 
 /// A wave on the host.
 pub(crate) type HostWave<'a> = Wave<'a, PreparedScene, RayList, Vec<Hit>>;

@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 use glam::Vec3;
-use lightmesh_layout::constants::{BOUNCE_FINER, BOUNCE_SIDE, ORDERS as MOST_ORDERS};
+use lightmesh_layout::constants::{BOUNCE_FINER, BOUNCE_SIDE, ORDERS as MAX_ORDERS};
 use rayon::prelude::*;
 
 use super::cells::{Asked, CellHasher, KIND_BITS, NAME_BITS, Site, nearest_of_kind};
@@ -29,7 +29,7 @@ use crate::shading::luminance;
 use crate::stages::primary_rays::cpu::batch;
 
 /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's.
-pub(crate) const ORDERS: usize = MOST_ORDERS as usize;
+pub(crate) const ORDERS: usize = MAX_ORDERS as usize;
 /// The rays of a node.
 pub(super) const FAN: Fan = Fan::new(BOUNCE_SIDE);
 

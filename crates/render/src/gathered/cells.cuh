@@ -8,7 +8,7 @@
 DEVICE int level_of_width(float width, float &rest) {
     const unsigned bits = __float_as_uint(larger(width, F32_MIN_POSITIVE));
     rest = __uint_as_float((bits & ~F32_INFINITY_BITS) | __float_as_uint(1.0f));
-    return max(LEAST_LEVEL, min((int)(bits >> 23) - 127, MOST_LEVEL));
+    return max(MIN_LEVEL, min((int)(bits >> 23) - 127, MAX_LEVEL));
 }
 
 // The size of the cells of a level.

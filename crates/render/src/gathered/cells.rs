@@ -8,8 +8,8 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::{IVec3, Vec3};
 use lightmesh_layout::constants::{
-    CELL_INDEX_BITS, CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z, GOLDEN_RATIO, LEAST_LEVEL, LEAST_SQUARE, LEVEL_BIAS,
-    MOST_LEVEL, NODE_OPEN, NODE_REACH, SITE_CANDIDATES, SITE_INWARDS, SITE_OPEN, SITE_RADIUS, SITE_RAISED,
+    CELL_INDEX_BITS, CELL_OFFSET_X, CELL_OFFSET_Y, CELL_OFFSET_Z, GOLDEN_RATIO, LEVEL_BIAS, MAX_LEVEL, MIN_LEVEL,
+    MIN_SQUARE, NODE_OPEN, NODE_REACH, SITE_CANDIDATES, SITE_INWARDS, SITE_OPEN, SITE_RADIUS, SITE_RAISED,
     SURFACE_KINDS,
 };
 use lightmesh_scene::Bounds;
@@ -40,7 +40,7 @@ pub(super) const NAME_BITS: u32 = KIND_BITS + FINER.count_ones();
 #[inline(always)]
 pub(super) fn level_of(width: f32) -> (i32, f32) {
     let bits = width.max(f32::MIN_POSITIVE).to_bits();
-    (((bits >> 23) as i32 - 127).clamp(LEAST_LEVEL, MOST_LEVEL), f32::from_bits(bits & 0x7f_ffff | 0x3f80_0000))
+    (((bits >> 23) as i32 - 127).clamp(MIN_LEVEL, MAX_LEVEL), f32::from_bits(bits & 0x7f_ffff | 0x3f80_0000))
 }
 
 /// The size of the cells of a level.
@@ -316,7 +316,7 @@ pub(super) fn outward(triangle: &Triangle) -> Vec3 {
 #[inline(always)]
 fn kinds_of(triangle: &Triangle) -> Option<[Kind; 2]> {
     let outward = outward(triangle);
-    if !triangle.is_usable() || outward.length_squared() <= LEAST_SQUARE {
+    if !triangle.is_usable() || outward.length_squared() <= MIN_SQUARE {
         return None;
     }
     Some([kind_of(outward, true), kind_of(-outward, false)])

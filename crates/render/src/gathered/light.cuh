@@ -19,7 +19,7 @@ DEVICE void add_light(SurfaceLight &light, float share, const SurfaceLight &othe
 // Adds radiance that arrives along a direction, times its weight.
 DEVICE void take_light(SurfaceLight &light, Vec3 normal, Vec3 direction, Vec3 weighted) {
     const float cosine = dot(direction, normal);
-    const Vec3 across = (direction - cosine * normal) / larger(cosine, LEAST_TILT_COSINE);
+    const Vec3 across = (direction - cosine * normal) / larger(cosine, MIN_TILT_COSINE);
     light.mean = light.mean + weighted;
     light.tilt[0] = light.tilt[0] + across.x * weighted;
     light.tilt[1] = light.tilt[1] + across.y * weighted;

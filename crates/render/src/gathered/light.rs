@@ -1,7 +1,7 @@
 //! Light that arrives at a surface point. Twin: `light.cuh`.
 
 use glam::Vec3;
-use lightmesh_layout::constants::LEAST_TILT_COSINE;
+use lightmesh_layout::constants::MIN_TILT_COSINE;
 
 use super::directions::{BINS, bin};
 
@@ -39,7 +39,7 @@ impl Light {
     #[inline(always)]
     pub(super) fn take(&mut self, normal: Vec3, direction: Vec3, weighted: Vec3) {
         let cosine = direction.dot(normal);
-        let across = (direction - cosine * normal) / cosine.max(LEAST_TILT_COSINE);
+        let across = (direction - cosine * normal) / cosine.max(MIN_TILT_COSINE);
         self.mean += weighted;
         self.tilt[0] += across.x * weighted;
         self.tilt[1] += across.y * weighted;

@@ -32,7 +32,7 @@ struct Open {
 // The segment to a site. Both ends are raised, as far as nothing is in the way: not through a thin board.
 DEVICE Ray site_segment(Vec3 position, Vec3 normal, const Open &open, const Site &site, bool covered) {
     const float raised = SITE_RAISED * length(site.position - position);
-    const float step = fminf(raised / larger(dot(open.direction, normal), LEAST_RISE), SITE_STEP * open.reach);
+    const float step = fminf(raised / larger(dot(open.direction, normal), MIN_RISE), SITE_STEP * open.reach);
     const Vec3 end = covered ? site.origin : site.origin + raised * site.normal;
     return long_segment(open.from + step * open.direction, end);
 }
@@ -68,7 +68,7 @@ DEVICE void weigh_site(Balance &balance, Vec3 way, float weight) {
 // The slope of the factors of weights; false if the sites are nearly in line, and weights stay.
 DEVICE bool balance_slope(const Balance &balance, float &x, float &y) {
     const float determinant = balance.xx * balance.yy - balance.xy * balance.xy, trace = balance.xx + balance.yy;
-    if (determinant <= LEAST_SPREAD * trace * trace)
+    if (determinant <= MIN_SPREAD * trace * trace)
         return false;
     x = (balance.yy * balance.first_x - balance.xy * balance.first_y) / determinant;
     y = (balance.xx * balance.first_y - balance.xy * balance.first_x) / determinant;

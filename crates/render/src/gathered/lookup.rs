@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use glam::{IVec3, Vec2, Vec3};
 use lightmesh_layout::constants::{
-    CELLS_AROUND, LEAST_RISE, LEAST_SPREAD, SITE_COSINE, SITE_MARGIN, SITE_RADIUS, SITE_RAISED, SITE_STEP,
-    SITE_THICKNESS,
+    CELLS_AROUND, MIN_RISE, MIN_SPREAD, SITE_COSINE, SITE_MARGIN, SITE_RADIUS, SITE_RAISED, SITE_STEP, SITE_THICKNESS,
 };
 use lightmesh_scene::Bounds;
 use lightmesh_trace::accel::{Hit, Ray};
@@ -80,7 +79,7 @@ impl Place {
     pub(super) fn segment(&self, site: &SurfacePoint, covered: bool) -> Ray {
         let raised = SITE_RAISED * (site.position - self.position).length();
         let Open { from, direction, reach } = self.open;
-        let step = (raised / direction.dot(self.normal).max(LEAST_RISE)).min(SITE_STEP * reach);
+        let step = (raised / direction.dot(self.normal).max(MIN_RISE)).min(SITE_STEP * reach);
         let end = if covered { site.origin } else { site.origin + raised * site.normal };
         long_segment(from + step * direction, end)
     }
@@ -220,7 +219,7 @@ fn balance(cells: &Cells, place: &Place, links: &mut [Link]) {
         yy += weight * y * y;
     }
     let (determinant, trace) = (xx * yy - xy * xy, xx + yy);
-    if determinant <= LEAST_SPREAD * trace * trace {
+    if determinant <= MIN_SPREAD * trace * trace {
         return;
     }
     let slope = Vec2::new(yy * first.x - xy * first.y, xx * first.y - xy * first.x) / determinant;

@@ -59,7 +59,7 @@ const PART_KEPT: u64 = 4;
 /// Rays may take one part in this many.
 const PART_FOR_RAYS: u64 = 8;
 /// Cells are no smaller than this share of the largest coordinate, whose digits would not suffice.
-const LEAST_SIZE: f32 = 1.0 / (1 << 20) as f32;
+const MIN_SIZE: f32 = 1.0 / (1 << 20) as f32;
 /// Without fine sites, surface points count as such of cells with this share of it.
 const SIZE_ALONE: f32 = 1.0 / (1 << 10) as f32;
 
@@ -89,7 +89,7 @@ impl Gathering {
             Quality::Final => (4.0, [24, 42], 8),
         };
         let fans = Fans { far: far.map(Fan::new), near: Fan::new(near) };
-        let least_level = level_of(LEAST_SIZE * bounds.farthest()).0;
+        let least_level = level_of(MIN_SIZE * bounds.farthest()).0;
         let [many, few] = RAYS_AT_ONCE;
         let is_scarce = left.is_some_and(|left| BYTES_OF_RAY * many as u64 > left / PART_FOR_RAYS);
         Gathering {
@@ -165,13 +165,13 @@ struct Ask {
 /// The mean radiance that each surface point of a wave receives, weighted by the cosine; zero for rays that see nothing.
 pub(crate) fn gather(wave: &HostWave, how: &Gathering, kept: &mut SurfaceLight) -> Vec<Vec3> {
     let mut light = vec![Vec3::ZERO; wave.hits.len()];
-    let scene = Scene { job: wave.job, scene: wave.scene, rays_at_once: how.rays_at_once };
+    let scene = Scene { context: wave.context, scene: wave.scene, rays_at_once: how.rays_at_once };
     for (part, light) in light.chunks_mut(POINTS_AT_ONCE).enumerate() {
         if how.most_kept.is_some_and(|most| kept.memory() > most) {
             *kept = SurfaceLight::default();
         }
         gather_part(wave, &scene, how, kept, part * POINTS_AT_ONCE, light);
-        wave.job.advance(light.len() as u64);
+        wave.context.advance(light.len() as u64);
     }
     light
 }

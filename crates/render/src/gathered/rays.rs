@@ -16,11 +16,11 @@ use crate::counters::Tally;
 use crate::data::lights::LightGroup;
 use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
-use crate::job::Sampling;
+use crate::render_context::Sampling;
 use crate::sampling::{light_center, random_bits};
 use crate::shading::environment::surroundings;
 use crate::shading::{LightTargets, Surface, falloff, luminance, material_of};
-use crate::shadow::{Aim, Targets, hidden, shadow_segment, size};
+use crate::shadow::{ShadowTarget, Targets, hidden, shadow_segment, size};
 use crate::stages::primary_rays::cpu::{batch, closest_hits};
 use crate::surface::SurfacePoint;
 
@@ -89,7 +89,7 @@ impl Scene<'_> {
         let nothing = Ray { origin: Vec3::ZERO, direction: Vec3::ZERO, t_max: 0.0 };
         let mut list = RayList { cone: fan.cone(), rays: vec![nothing; count], ..RayList::default() };
         let (mut weights, mut areas) = (vec![0.0; count], vec![1.0; count]);
-        let seed = self.job.sampling.seed;
+        let seed = self.context.sampling.seed;
         let fans = list.rays.par_chunks_exact_mut(fan.len()).zip(weights.par_chunks_exact_mut(fan.len()));
         let fans = fans.zip(areas.par_chunks_exact_mut(fan.len())).zip(&sites);
         fans.enumerate().for_each(|(number, (((rays, weights), areas), &(site, reach)))| {
@@ -108,8 +108,8 @@ impl Scene<'_> {
             }
             weights.iter_mut().for_each(|weight| *weight /= sum);
         });
-        let hits = closest_hits(self.scene, &list, |_, trace| self.job.piece(0, trace));
-        Tally::add(&self.job.tally.gather_rays, count as u64);
+        let hits = closest_hits(self.scene, &list, |_, trace| self.context.piece(0, trace));
+        Tally::add(&self.context.tally.gather_rays, count as u64);
         let seeds = sites.iter().map(|(site, _)| site.seed).collect();
         let fans = hits.par_chunks_exact(fan.len()).zip(areas.par_chunks_exact(fan.len())).zip(&sites);
         let levels = fans.map(|((hits, areas), &(site, reach))| asked_level(site.level, reach, hits, areas)).collect();
@@ -118,13 +118,13 @@ impl Scene<'_> {
 
     /// What rays see, but for the light that reaches what they hit from no light directly. Rays that end before they hit anything see nothing.
     pub(super) fn seen(&self, cast: &Cast) -> Vec<Seen> {
-        let Scene { job, scene, .. } = *self;
-        let wave = HostWave { job, scene, rays: &cast.list, hits: &cast.hits, lights: LightGroup::ALL, parts: 1 };
+        let Scene { context, scene, .. } = *self;
+        let wave = HostWave { context, scene, rays: &cast.list, hits: &cast.hits, lights: LightGroup::ALL, parts: 1 };
         let lights = Lights::new(&wave);
         let mut seen = vec![Seen::default(); cast.hits.len()];
         let size = batch(seen.len());
         seen.par_chunks_mut(size).enumerate().for_each(|(batch, seen)| {
-            job.piece(0, || {
+            context.piece(0, || {
                 let mut segments = Segments::default();
                 for (place, seen) in seen.iter_mut().enumerate() {
                     *seen = seen_by(&wave, cast, &lights, [batch * size + place, place], &mut segments);
@@ -203,7 +203,7 @@ fn brighten(seen: &mut [Seen], weights: &[f32]) {
 /// What rays need to know of lights.
 struct Lights {
     targets: LightTargets,
-    aim: Aim,
+    target: ShadowTarget,
     /// Whether there are lights for what lamps emit.
     lamps: bool,
 }
@@ -211,8 +211,8 @@ struct Lights {
 impl Lights {
     fn new(wave: &HostWave) -> Lights {
         // The first of several samples: a single one would be the centre.
-        let aim = Aim::Extent(Sampling { samples: 2, spread: true, ..wave.job.sampling });
-        Lights { targets: LightTargets::new(wave.lights()), aim, lamps: wave.scene.has_lamps() }
+        let target = ShadowTarget::Area(Sampling { samples: 2, spread: true, ..wave.context.sampling });
+        Lights { targets: LightTargets::new(wave.lights()), target, lamps: wave.scene.has_lamps() }
     }
 }
 
@@ -232,7 +232,7 @@ impl Choice {
         if lights.len() > CHOSEN_LIGHTS as usize {
             let total = lights.iter().fold(0.0, |total, light| total + strength_expected(light, from));
             if total > 0.0 && total < f32::INFINITY {
-                let random = random_bits(wave.job.sampling.seed, seed, lights.len());
+                let random = random_bits(wave.context.sampling.seed, seed, lights.len());
                 choice = Choice { scale: CHOSEN_LIGHTS as f32 / total, sum: (random >> 40) as f32 * LAST_DIGIT };
             }
         }
@@ -287,14 +287,14 @@ impl Segments {
     /// part of it is below the horizon.
     fn note(&mut self, wave: &HostWave, lights: &Lights, seed: u64, place: usize, surface: &Surface) {
         let point = &surface.point;
-        let reach = wave.scene.geometry.reach(point.origin);
+        let reach = wave.scene.geometry.sun_distance(point.origin);
         let mut choice = Choice::new(wave, (point, reach), seed);
         for (index, light) in wave.lights().iter().enumerate() {
             let chance = choice.chance(light, (point, reach));
             if chance == 0.0 {
                 continue;
             }
-            let target = Targets::new(&lights.aim, (index, light), point.origin, reach, seed).get(0);
+            let target = Targets::new(&lights.target, (index, light), point.origin, reach, seed).get(0);
             if point.normal.dot(target - point.origin) <= 0.0 {
                 continue;
             }
@@ -309,7 +309,7 @@ impl Segments {
     }
 
     fn add(&self, wave: &HostWave, seen: &mut [Seen]) {
-        Tally::add(&wave.job.tally.shadow_rays, self.rays.len() as u64);
+        Tally::add(&wave.context.tally.shadow_rays, self.rays.len() as u64);
         for (&(place, gain), hidden) in self.gains.iter().zip(hidden(wave, &self.rays)) {
             if !hidden {
                 seen[place].radiance += gain;

@@ -32,7 +32,7 @@ DEVICE bool kinds_of(const Corners &corners, unsigned &front, unsigned &back) {
     const Vec3 outward = outward_of(corners);
     front = surface_kind(outward, true);
     back = surface_kind(-outward, false);
-    return length_squared(outward) > LEAST_SQUARE;
+    return length_squared(outward) > MIN_SQUARE;
 }
 
 // Points of one kind of surface: squares of distances, as bits, times 2^32, plus indices of triangles, the nearest first; all ones in places
@@ -159,7 +159,7 @@ DEVICE void place_sites(const Lookup &args, const Structure &structure) {
     clear_candidates(candidates, SURFACE_KINDS);
 
     // 1. The points of each kind.
-    const Region<BoxForm> region = region_within(bounds);
+    const Region<BoxShape> region = region_within(bounds);
     auto search = begin_search(structure, region, memory);
     while (goes_on(structure, search)) {
         unsigned count = 0;
@@ -207,7 +207,7 @@ DEVICE void place_nodes(const Bounce &args, const Structure &structure) {
     // Cells may have many triangles: those in the middle come first.
     for (float share = NODE_REACH; share <= 1.0f && candidates.nearest[0] == NO_CANDIDATE; share *= 2.0f) {
         const float reach = share * size;
-        const Region<NearForm> region = region_near(Bounds{middle, middle}, reach);
+        const Region<NearShape> region = region_near(Bounds{middle, middle}, reach);
         auto search = begin_search(structure, region, memory);
         while (goes_on(structure, search)) {
             unsigned count = 0;

@@ -10,11 +10,11 @@ use lightmesh_layout::counters::Counters;
 use lightmesh_layout::geometry::Tally;
 use lightmesh_scene::Environment;
 
-use super::held::{DeviceEnvironment, DeviceGeometry, DeviceTemplate, DeviceTextures, Resident};
 use super::rates::Rates;
+use super::resident::{DeviceEnvironment, DeviceGeometry, DeviceTemplate, DeviceTextures, Resident};
 use crate::error::RenderError;
-use crate::job::Job;
 use crate::prepared::PreparedGeometry;
+use crate::render_context::RenderContext;
 use crate::stage::Stage;
 use crate::sync::locked;
 use crate::textures::AllLevels;
@@ -117,14 +117,14 @@ impl<R: Runtime> Cuda<R> {
     }
 
     /// Reads counters and clocks at the end of a band.
-    pub(crate) fn end_band(&self, job: &Job) -> Result<(), RenderError> {
+    pub(crate) fn end_band(&self, context: &RenderContext) -> Result<(), RenderError> {
         let counted = sum_of(&self.counters()?.read()?);
         // Kernels count the tests that they perform; the rest was decided without a test.
         let short_tests_culled = counted.half_ball - counted.short_tests;
-        job.tally.add_all(&Counters { short_tests_culled, ..counted });
+        context.tally.add_all(&Counters { short_tests_culled, ..counted });
         for (stage, from, to) in locked(&self.spans).drain(..) {
             let seconds = self.pool.runtime().seconds(&from, &to).map_err(|fault| self.pool.fault(fault))?;
-            job.add_seconds(stage, seconds);
+            context.add_seconds(stage, seconds);
         }
         self.rates.settle(&self.pool)
     }

@@ -65,7 +65,7 @@ fn bytes_per_pixel(plan: &Plan) -> u64 {
     } else {
         0
     };
-    let ray = listed + cones + sum + size_of::<Hit>() as u64 + plan.footprint.device;
+    let ray = listed + cones + sum + size_of::<Hit>() as u64 + plan.bytes_per_ray.device;
     plan.film_bytes() + plan.sample_bytes() + plan.rays_per_pixel() * ray
 }
 

@@ -2,13 +2,13 @@
 
 use glam::IVec3;
 use lightmesh_kernels::Runtime;
-use lightmesh_layout::constants::MOST_REACH;
+use lightmesh_layout::constants::MAX_REACH;
 use lightmesh_layout::mesh::{LightMesh as Record, TemplateRow};
 use lightmesh_layout::scene::Sampling;
 use lightmesh_scene::Weight;
 
 use super::device::Cuda;
-use super::held::DeviceTemplate;
+use super::resident::DeviceTemplate;
 use crate::error::RenderError;
 use crate::light_mesh::LightMesh;
 use crate::sync::locked;
@@ -64,7 +64,7 @@ fn lines(rows: &[TemplateRow]) -> Vec<TemplateRow> {
 }
 
 fn packed_offset(offset: IVec3) -> u32 {
-    let [x, y, z] = (offset + MOST_REACH).to_array().map(|i| i as u32);
+    let [x, y, z] = (offset + MAX_REACH).to_array().map(|i| i as u32);
     x | y << 8 | z << 16
 }
 
@@ -106,6 +106,6 @@ fn record<R: Runtime>(mesh: &LightMesh, template: &DeviceTemplate<R>) -> Record 
 }
 
 /// The sampling of area lights, as a record for kernels.
-pub(crate) fn sampling(sampling: crate::job::Sampling) -> Sampling {
+pub(crate) fn sampling(sampling: crate::render_context::Sampling) -> Sampling {
     Sampling { seed: sampling.seed, samples: sampling.samples, spread: u32::from(sampling.spread) }
 }

@@ -2,16 +2,16 @@
 //!
 //! The launches of each stage are next to its CPU twin (`stages/<stage>/cuda.rs` and `kernel.cu`); [`backend`](crate::backend) combines
 //! them. This module contains the device itself ([`device`]), the copy of the scene ([`scene`]), the data that stages pass to each other
-//! ([`rays`], [`cells`], [`masks`], [`points`], [`lit`], [`film`]), launches split into pieces short enough for any watchdog ([`pieces`]),
+//! ([`rays`], [`cells`], [`masks`], [`points`], [`light_point_visibility`], [`film`]),
+//! launches split into pieces short enough for any watchdog ([`pieces`]),
 //! and the memory plan ([`memory`]).
 
 pub(crate) mod cells;
 mod copy;
 mod device;
 pub(crate) mod film;
-mod held;
 pub(crate) mod items;
-pub(crate) mod lit;
+pub(crate) mod light_point_visibility;
 pub(crate) mod masks;
 mod materials;
 pub(crate) mod memory;
@@ -22,6 +22,7 @@ pub(crate) mod points;
 mod probes;
 mod rates;
 pub(crate) mod rays;
+mod resident;
 pub(crate) mod samples;
 mod scan;
 mod scene;

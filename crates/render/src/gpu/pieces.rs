@@ -13,7 +13,7 @@ use lightmesh_kernels::{Kernel, Runtime};
 use super::device::Cuda;
 use super::rates::{Timing, Work};
 use crate::error::RenderError;
-use crate::job::Job;
+use crate::render_context::RenderContext;
 
 impl<R: Runtime> Cuda<R> {
     /// Calls `launch` with consecutive ranges of the units of work, each to be queued as one launch of `kernel` and as large as the
@@ -22,7 +22,7 @@ impl<R: Runtime> Cuda<R> {
     /// A unit must not take long: pieces of fewer units than run concurrently are no faster, however small they are.
     pub(crate) fn in_pieces(
         &self,
-        job: &Job,
+        context: &RenderContext,
         kernel: Kernel,
         work: Work,
         mut launch: impl FnMut(Range<u64>) -> Result<(), RenderError>,
@@ -30,7 +30,7 @@ impl<R: Runtime> Cuda<R> {
         let Work { units, cost, progress, .. } = work;
         let mut done = 0;
         while done < units {
-            job.check()?;
+            context.check()?;
             let piece = self.rates.piece(kernel, &work).min(units - done);
             let from = self.mark()?;
             launch(done..done + piece)?;
@@ -40,7 +40,7 @@ impl<R: Runtime> Cuda<R> {
             if done < units {
                 self.rates.settle(&self.pool)?;
             }
-            job.advance(progress * done / units - progress * (done - piece) / units);
+            context.advance(progress * done / units - progress * (done - piece) / units);
         }
         Ok(())
     }

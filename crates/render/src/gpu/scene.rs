@@ -5,21 +5,21 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::constants::{
-    BVH_STACK, GRID_FRAME_WORDS, MOST_HELD, RECENT_TRIANGLES, STACK_OF_INSTANCES, STACK_OF_ROUNDS, STACK_PER_LEVEL,
+    BVH_STACK, GRID_FRAME_WORDS, MAX_HELD, RECENT_TRIANGLES, STACK_OF_INSTANCES, STACK_OF_ROUNDS, STACK_PER_LEVEL,
 };
 use lightmesh_layout::geometry::{
-    Approach, BruteForce, Bvh, BvhNode, Coverage, DVec3, Grid, Instanced, InstancedBvh, Triangle, Triangles, Vec3,
+    BruteForce, Bvh, BvhNode, Coverage, DVec3, Grid, Instanced, InstancedBvh, RayClamp, Triangle, Triangles, Vec3,
 };
 use lightmesh_layout::scene::{self as layout, EnvironmentLevel, Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
 use lightmesh_scene::{Environment, Falloff, LightKind};
-use lightmesh_trace::accel::{self, Form};
+use lightmesh_trace::accel::{self, AcceleratorKind};
 
 use super::device::Cuda;
-use super::held::{Buffers, DeviceEnvironment, DeviceGeometry, DeviceTextures};
+use super::resident::{Buffers, DeviceEnvironment, DeviceGeometry, DeviceTextures};
 use crate::error::RenderError;
-use crate::job::Job;
 use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
+use crate::render_context::RenderContext;
 use crate::sampling::disk_radius;
 use crate::settings::Acceleration;
 use crate::shading::ambient::AmbientLight;
@@ -116,7 +116,7 @@ impl<R: Runtime> DeviceScene<R> {
             Structure::BruteForce => 0,
             Structure::InstancedBvh => {
                 let per_level = (STACK_PER_LEVEL * self.record.instanced.depth).next_multiple_of(4);
-                2 * (STACK_OF_INSTANCES + MOST_HELD + per_level)
+                2 * (STACK_OF_INSTANCES + MAX_HELD + per_level)
             }
         }
     }
@@ -134,13 +134,17 @@ pub(crate) fn check_structure<R: Runtime>(runtime: &R, acceleration: &Accelerati
 
 impl<R: Runtime> Cuda<R> {
     /// The scene on this device. Its geometry is uploaded if it is not there yet.
-    pub(crate) fn device_scene(&self, job: &Job, scene: &PreparedScene) -> Result<DeviceScene<R>, RenderError> {
-        let geometry = self.device_geometry(job, scene)?;
+    pub(crate) fn device_scene(
+        &self,
+        context: &RenderContext,
+        scene: &PreparedScene,
+    ) -> Result<DeviceScene<R>, RenderError> {
+        let geometry = self.device_geometry(context, scene)?;
         let mut upload = Upload { cuda: self, buffers: Vec::new() };
         let mut record = upload.lights(scene, geometry.record)?;
         let lights = &scene.scene.lights;
         let environment =
-            lights.environment.as_ref().map(|original| self.device_environment(job, original)).transpose()?;
+            lights.environment.as_ref().map(|original| self.device_environment(context, original)).transpose()?;
         if let (Some(original), Some(copy)) = (&lights.environment, &environment) {
             let gathered = copy.gathered.as_ref().unwrap_or(&copy.levels);
             let levels = [copy.levels.input(), gathered.input()];
@@ -158,25 +162,29 @@ impl<R: Runtime> Cuda<R> {
         })
     }
 
-    fn device_geometry(&self, job: &Job, scene: &PreparedScene) -> Result<Arc<DeviceGeometry<R>>, RenderError> {
+    fn device_geometry(
+        &self,
+        context: &RenderContext,
+        scene: &PreparedScene,
+    ) -> Result<Arc<DeviceGeometry<R>>, RenderError> {
         let mut resident = locked(&self.resident);
         if let Some(copy) = resident.find(&scene.geometry) {
             return Ok(copy);
         }
-        job.work.begin(job.observer, Stage::Upload, 1, 0);
+        context.work.begin(context.observer, Stage::Upload, 1, 0);
         let upload = || {
             let textures = self.device_textures(scene)?;
             Upload { cuda: self, buffers: Vec::new() }.geometry(scene, textures)
         };
-        let uploaded = job.wall_time(Stage::Upload, upload);
-        job.work.end(job.observer, Stage::Upload);
+        let uploaded = context.wall_time(Stage::Upload, upload);
+        context.work.end(context.observer, Stage::Upload);
         let copy = Arc::new(uploaded?);
-        if copy.structure == Structure::Bvh && matches!(scene.geometry.accelerator.form(), Form::Grid(_)) {
-            job.observer.note(
+        if copy.structure == Structure::Bvh && matches!(scene.geometry.accelerator.kind(), AcceleratorKind::Grid(_)) {
+            context.observer.note(
                 "some surfaces are cut out: grids on CUDA devices have none, so a BVH takes the grid's place; the image is the same",
             );
         }
-        resident.keep(&scene.geometry, Arc::clone(&copy));
+        resident.insert(&scene.geometry, Arc::clone(&copy));
         Ok(copy)
     }
 }
@@ -192,14 +200,14 @@ impl<R: Runtime> Cuda<R> {
         let mut upload = Upload { cuda: self, buffers: Vec::new() };
         let records = upload.textures(&scene.scene.geometry, levels)?;
         let copy = Arc::new(DeviceTextures { records, texels: upload.buffers });
-        resident.keep(levels, Arc::clone(&copy));
+        resident.insert(levels, Arc::clone(&copy));
         Ok(copy)
     }
 
     /// The levels of an environment on this device. They are uploaded if they are not there yet.
     fn device_environment(
         &self,
-        job: &Job,
+        context: &RenderContext,
         original: &Arc<Environment>,
     ) -> Result<Arc<DeviceEnvironment<R>>, RenderError> {
         let mut resident = locked(&self.environments);
@@ -225,8 +233,8 @@ impl<R: Runtime> Cuda<R> {
             let gathered = (!std::ptr::eq(original.gathered(), &**original)).then(|| all(original.gathered()));
             Ok(DeviceEnvironment { levels: seen, gathered: gathered.transpose()?, texels: upload.buffers })
         };
-        let copy = Arc::new(job.wall_time(Stage::Upload, upload)?);
-        resident.keep(original, Arc::clone(&copy));
+        let copy = Arc::new(context.wall_time(Stage::Upload, upload)?);
+        resident.insert(original, Arc::clone(&copy));
         Ok(copy)
     }
 }
@@ -284,7 +292,7 @@ impl<R: Runtime> Upload<'_, R> {
         let mesh = &geometry.mesh;
         let tinted = geometry.materials.iter().any(|material| is_tinted(geometry, material));
         let indices: &[[u32; 3]] = if tinted || !mesh.normals.is_empty() { &mesh.triangles } else { &[] };
-        let (center, far) = prepared.reach_parameters();
+        let (center, far) = prepared.sun_distance_parameters();
         let mut record = Scene {
             triangles: self.all_triangles(&prepared.triangles)?,
             indices: self.array::<Indices>("indices", bytemuck::cast_slice(indices))?,
@@ -322,24 +330,24 @@ impl<R: Runtime> Upload<'_, R> {
         coverage: Coverage,
         record: &mut Scene,
     ) -> Result<Structure, RenderError> {
-        Ok(match prepared.accelerator.form() {
-            Form::Bvh(bvh) if !bvh.instances().is_empty() => {
+        Ok(match prepared.accelerator.kind() {
+            AcceleratorKind::Bvh(bvh) if !bvh.instances().is_empty() => {
                 record.instanced = InstancedBvh { coverage, ..self.instanced_bvh(bvh)? };
                 Structure::InstancedBvh
             }
-            Form::Bvh(bvh) => {
+            AcceleratorKind::Bvh(bvh) => {
                 record.bvh = Bvh { coverage, ..self.bvh(bvh)? };
                 Structure::Bvh
             }
-            Form::Grid(grid) if prepared.coverage.table().is_some() => {
+            AcceleratorKind::Grid(grid) if prepared.coverage.table().is_some() => {
                 record.bvh = Bvh { coverage, ..self.bvh(&accel::Bvh::new(&grid.held()))? };
                 Structure::Bvh
             }
-            Form::Grid(grid) => {
+            AcceleratorKind::Grid(grid) => {
                 record.grid = self.grid(grid)?;
                 Structure::Grid
             }
-            Form::BruteForce(all) => {
+            AcceleratorKind::BruteForce(all) => {
                 record.brute_force = BruteForce { coverage, ..self.brute_force(all)? };
                 Structure::BruteForce
             }
@@ -393,13 +401,13 @@ impl<R: Runtime> Upload<'_, R> {
     }
 
     fn instanced_bvh(&mut self, bvh: &accel::Bvh) -> Result<InstancedBvh, RenderError> {
-        let Bvh { nodes, triangles, coverage, approach, node_count, depth } = self.bvh(bvh)?;
+        let Bvh { nodes, triangles, coverage, ray_clamp, node_count, depth } = self.bvh(bvh)?;
         Ok(InstancedBvh {
             nodes,
             triangles,
             coverage,
             instances: self.instances(bvh.instances())?,
-            approach,
+            ray_clamp,
             node_count,
             depth,
             instance_count: bvh.instances().len() as u32,
@@ -414,7 +422,7 @@ impl<R: Runtime> Upload<'_, R> {
             nodes: self.array::<BvhNode>("BVH", bytemuck::cast_slice(nodes))?,
             triangles: self.triangles(bvh.triangles())?,
             coverage: Coverage::zeroed(),
-            approach: approach(bvh.approach()),
+            ray_clamp: ray_clamp(bvh.ray_clamp()),
             node_count: nodes.len() as u32,
             depth: bvh.depth() as u32,
         })
@@ -429,7 +437,7 @@ impl<R: Runtime> Upload<'_, R> {
             origin: DVec3::from(origin.to_array()),
             size: vec3(size),
             dims: grid.dims(),
-            approach: approach(grid.approach()),
+            ray_clamp: ray_clamp(grid.ray_clamp()),
             triangle_count: grid.triangles().len() as u32,
             margin: grid.margin(),
         })
@@ -439,7 +447,7 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(BruteForce {
             triangles: self.triangles(all.triangles())?,
             coverage: Coverage::zeroed(),
-            approach: approach(all.approach()),
+            ray_clamp: ray_clamp(all.ray_clamp()),
             count: all.triangles().len() as u32,
             spare: 0,
         })
@@ -461,8 +469,8 @@ pub(super) fn vec3(v: glam::Vec3) -> Vec3 {
     Vec3::from(v.to_array())
 }
 
-fn approach((center, radius): (glam::Vec3, f32)) -> Approach {
-    Approach { center: vec3(center), radius }
+fn ray_clamp((center, radius): (glam::Vec3, f32)) -> RayClamp {
+    RayClamp { center: vec3(center), radius }
 }
 
 fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
@@ -471,7 +479,7 @@ fn light(geometry: &PreparedGeometry, light: &lightmesh_scene::Light) -> Light {
         intensity: vec3(light.intensity),
         inverse_square: u32::from(light.falloff == Falloff::InverseSquare),
         size: crate::shadow::size(light, 1.0),
-        scale: crate::shadow::sight::scale(geometry, light),
+        scale: crate::shadow::projected_light::scale(geometry, light),
         surface: u32::from(light.surface.is_some()),
         body: crate::sampling::body(light),
         ..Zeroable::zeroed()

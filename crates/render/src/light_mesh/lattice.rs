@@ -31,7 +31,7 @@ impl Lattice {
     pub const OFFSET: DVec3 = DVec3::new(0.137, 0.241, 0.319);
 
     /// Multiples of h beyond which double precision cannot distinguish the light points of the world.
-    const MOST_IN_WORLD: f64 = (1u64 << 50) as f64;
+    const MAX_IN_WORLD: f64 = (1u64 << 50) as f64;
 
     /// The lattice of step `step` that reaches `reach` steps beyond the scene's triangles on every side.
     ///
@@ -102,7 +102,7 @@ impl Lattice {
 /// bits.
 fn least_step(origin: DVec3, bounds: &Bounds, reach: f32) -> f64 {
     let here = f64::from(bounds.farthest()) / (f64::from(INDEX_BIAS) - margin(reach) - 2.0);
-    here.max(origin.abs().max_element() / Lattice::MOST_IN_WORLD)
+    here.max(origin.abs().max_element() / Lattice::MAX_IN_WORLD)
 }
 
 /// Light points beyond those around the scene: those that its surface points may use, and a margin for rounding.

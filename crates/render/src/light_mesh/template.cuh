@@ -12,7 +12,7 @@ CONSTANT(TemplateRow, template_rows, [TEMPLATE_LINES])
 // Offset of template point k from the cell.
 DEVICE IVec3 template_offset(const LightMesh &mesh, unsigned k) {
     const unsigned packed = __ldg(&mesh.offsets[k]);
-    return IVec3{(int)(packed & 255) - MOST_REACH, (int)(packed >> 8 & 255) - MOST_REACH, (int)(packed >> 16) - MOST_REACH};
+    return IVec3{(int)(packed & 255) - MAX_REACH, (int)(packed >> 8 & 255) - MAX_REACH, (int)(packed >> 16) - MAX_REACH};
 }
 
 // A line as lanes see it that take one line each: first bit, number of points and offset of the first. The template is symmetric

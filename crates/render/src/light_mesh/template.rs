@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::IVec3;
-use lightmesh_layout::constants::MOST_REACH;
+use lightmesh_layout::constants::MAX_REACH;
 
 /// The light points that lie within r of *some* point of a cell, as offsets from the cell. Bit k of a surface point's mask
 /// refers to `offsets()[k]`.
@@ -32,7 +32,7 @@ impl Template {
     /// Smallest radius in steps.
     pub const MIN_RADIUS: f32 = 0.5;
     /// Largest radius in steps: 20 000 light points.
-    pub const MAX_RADIUS: f32 = MOST_REACH as f32;
+    pub const MAX_RADIUS: f32 = MAX_REACH as f32;
 
     /// The template of interpolation radius `radius` = r/h.
     pub fn new(radius: f32) -> Result<Template, TemplateError> {

@@ -18,9 +18,9 @@ use lightmesh_memory::Budget;
 use lightmesh_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::backend::run::Run;
+use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, Cpu, Cuda};
-use crate::cache::{Kept, MeshCache, MeshFileError};
+use crate::cache::{Cache, MeshCache, MeshFileError};
 use crate::device::{Choice, Chosen, Device};
 use crate::error::RenderError;
 use crate::gpu;
@@ -228,8 +228,8 @@ impl Renderer {
             Engine::Cpu => picture_on(&Cpu, Some(cache.host()), &self.rows, scene, settings, observer),
             Engine::Cuda(_, cuda) => {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
-                let kept = cache.device(cuda.pool().runtime().id());
-                picture_on(&*cuda, Some(kept), &self.rows, scene, settings, observer)
+                let cache = cache.device(cuda.pool().runtime().id());
+                picture_on(&*cuda, Some(cache), &self.rows, scene, settings, observer)
             }
         })
     }
@@ -259,12 +259,13 @@ fn points_on<B: Backend>(
     let scene = points.scene;
     backend.check_structure(scene.geometry.acceleration())?;
     let resolved = Resolved::at_points(points, settings, observer)?;
-    let job = resolved.job(observer).with_rows(rows);
-    let run = Run::new(backend, &job, None);
-    let on_device = run.or_forget(|backend| backend.scene(&job, scene, resolved.plan.memory_limit))?;
+    let context = resolved.context(observer).with_rows(rows);
+    let runner = StageRunner::new(backend, &context, None);
+    let on_device = runner.or_evict(|backend| backend.scene(&context, scene, resolved.plan.memory_limit))?;
     let Resolved { technique, plan, .. } = &resolved;
-    let (visibility, rows) = Baking { run, scene: &on_device, technique, plan }.bake(points)?;
-    let stats = report::stats(&job, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
+    let (visibility, rows) = Baking { runner, scene: &on_device, technique, plan }.bake(points)?;
+    let stats =
+        report::stats(&context, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
     Ok(PointVisibility { visibility, lights: scene.scene.lights.len(), stats })
 }
 
@@ -287,10 +288,10 @@ pub fn render_on<B: Backend>(
 /// As [`Renderer::render_prepared`].
 pub fn render_on_with<B: Backend>(
     backend: &B,
-    kept: &mut Kept<B::Table>,
+    cache: &mut Cache<B::Table>,
     scene: &PreparedScene,
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<Frame, RenderError> {
-    picture_on(backend, Some(kept), &Arc::default(), scene, settings, observer)
+    picture_on(backend, Some(cache), &Arc::default(), scene, settings, observer)
 }

@@ -15,25 +15,25 @@ use super::frame::Frame;
 use super::report::{self, DeviceFacts};
 use super::resolve::Resolved;
 use crate::backend::Backend;
-use crate::backend::run::Run;
-use crate::cache::Kept;
+use crate::backend::stage_runner::StageRunner;
+use crate::cache::Cache;
 use crate::data::picture::Picture;
 use crate::error::RenderError;
 use crate::gathered::Sources;
-use crate::job::Job;
 use crate::observer::Observer;
 use crate::passes::Passes;
 use crate::plan::Plan;
 use crate::prepared::PreparedScene;
+use crate::render_context::RenderContext;
 use crate::settings::{Crop, Settings};
 use crate::shading::ids::catchers;
 use crate::shadow::rows::KnownRows;
 use crate::stats::Stats;
 
-/// Renders one image, with what is `kept` from image to image on this backend, and the rows of samples that images share.
+/// Renders one image, with the `cache` of this backend, and the rows of samples that images share.
 pub(super) fn picture_on<B: Backend>(
     backend: &B,
-    mut kept: Option<&mut Kept<B::Table>>,
+    mut cache: Option<&mut Cache<B::Table>>,
     rows: &Arc<KnownRows>,
     scene: &PreparedScene,
     settings: &Settings,
@@ -43,11 +43,11 @@ pub(super) fn picture_on<B: Backend>(
     let open = without_background(scene, settings);
     let scene = open.as_ref().unwrap_or(scene);
 
-    let resolved = admit(backend, kept.as_deref_mut(), scene, settings, observer)?;
-    let job = resolved.job(observer).with_rows(rows);
-    let (picture, rows_at_once) = render(backend, kept, &job, &resolved)?;
+    let resolved = admit(backend, cache.as_deref_mut(), scene, settings, observer)?;
+    let context = resolved.context(observer).with_rows(rows);
+    let (picture, rows_at_once) = render(backend, cache, &context, &resolved)?;
     let seconds = start.elapsed().as_secs_f64();
-    let stats = report::stats(&job, &resolved, DeviceFacts::of(backend), rows_at_once, seconds);
+    let stats = report::stats(&context, &resolved, DeviceFacts::of(backend), rows_at_once, seconds);
     crop(develop(picture, &resolved, stats), settings.crop)
 }
 
@@ -60,7 +60,7 @@ fn without_background(scene: &PreparedScene, settings: &Settings) -> Option<Prep
 /// 1. Resolves the settings, and rejects what cannot be rendered before any of it is.
 fn admit<'a, B: Backend>(
     backend: &B,
-    kept: Option<&mut Kept<B::Table>>,
+    cache: Option<&mut Cache<B::Table>>,
     scene: &'a PreparedScene,
     settings: &'a Settings,
     observer: &dyn Observer,
@@ -68,11 +68,11 @@ fn admit<'a, B: Backend>(
     backend.check_structure(scene.geometry.acceleration())?;
     let mut resolved = Resolved::new(scene, settings, observer)?;
     let plan = &mut resolved.plan;
-    plan.kept = kept.as_ref().map_or(0, |kept| kept.memory());
+    plan.kept = cache.as_ref().map_or(0, |cache| cache.memory());
     if let Err(short) = backend.check_host_memory(plan) {
         // What is kept gives way to what is needed.
-        match kept {
-            Some(kept) if !kept.is_empty() => kept.clear(),
+        match cache {
+            Some(cache) if !cache.is_empty() => cache.clear(),
             _ => return Err(short),
         }
         plan.left = Budget::new(plan.memory_limit).left();
@@ -85,26 +85,26 @@ fn admit<'a, B: Backend>(
 ///    these are asked for.
 fn render<B: Backend>(
     backend: &B,
-    kept: Option<&mut Kept<B::Table>>,
-    job: &Job,
+    cache: Option<&mut Cache<B::Table>>,
+    context: &RenderContext,
     resolved: &Resolved,
 ) -> Result<(Picture, u32), RenderError> {
     let Resolved { scene, settings, technique, view, plan, .. } = resolved;
     let rows = 0..plan.size[1];
     let mut picture = Picture::planned(plan, [rows.clone(), rows]);
-    let run = Run::new(backend, job, kept);
-    let on_device = run.or_forget(|backend| backend.scene(job, scene, plan.memory_limit))?;
-    let plan = &Plan { reserved: reserved(&run, &on_device, settings, plan), ..plan.clone() };
+    let runner = StageRunner::new(backend, context, cache);
+    let on_device = runner.or_evict(|backend| backend.scene(context, scene, plan.memory_limit))?;
+    let plan = &Plan { reserved: reserved(&runner, &on_device, settings, plan), ..plan.clone() };
     let sources = plan.gathering.as_ref().map(|how| Sources::new(scene, settings.seed, how));
     if let Some(sources) = &sources {
-        run.recall_gathered(scene, sources);
+        runner.lookup_gathered(scene, sources);
     }
     let see_through = backend.see_through(&on_device);
-    let passes = Passes { run, scene: &on_device, see_through, technique, view, plan };
+    let passes = Passes { runner, scene: &on_device, see_through, technique, view, plan };
     let rendered = passes.render(&mut picture);
     // What a cancelled image gathered is not complete.
     if let (Ok(_), Some(sources)) = (&rendered, sources) {
-        passes.run.keep_gathered(scene, sources);
+        passes.runner.insert_gathered(scene, sources);
     }
     let rows = match rendered {
         Err(RenderError::Cancelled) if settings.partial && picture.finished > 0 => plan.most_rows.unwrap_or_default(),
@@ -114,16 +114,16 @@ fn render<B: Backend>(
 }
 
 /// Bytes by which what is kept of light points may grow.
-fn reserved<B: Backend>(run: &Run<B>, scene: &B::Scene, settings: &Settings, plan: &Plan) -> u64 {
+fn reserved<B: Backend>(runner: &StageRunner<B>, scene: &B::Scene, settings: &Settings, plan: &Plan) -> u64 {
     if !settings.has_light_points() {
         return 0;
     }
-    let reserved = run.begin_kept(run.backend.left(plan));
-    if run.backend.rows_at_once(scene, &Plan { reserved, ..plan.clone() }).is_ok() {
+    let reserved = runner.reserve(runner.backend.left(plan));
+    if runner.backend.rows_at_once(scene, &Plan { reserved, ..plan.clone() }).is_ok() {
         return reserved;
     }
     // All of it is needed for the image.
-    run.begin_kept(Some(0));
+    runner.reserve(Some(0));
     0
 }
 

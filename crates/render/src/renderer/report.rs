@@ -6,7 +6,7 @@ use lightmesh_scene::Projection;
 use super::resolve::Resolved;
 use crate::backend::Backend;
 use crate::counters::Counts;
-use crate::job::Job;
+use crate::render_context::RenderContext;
 use crate::shading::ambient::AmbientLight;
 use crate::stage::Seconds;
 use crate::stats::{CameraStats, DeviceStats, MemoryStats, SceneStats, SettingsStats, Stats};
@@ -25,12 +25,19 @@ impl DeviceFacts {
 }
 
 /// The statistics of an image that was rendered in `seconds`, `rows` rows at once.
-pub(super) fn stats(job: &Job, resolved: &Resolved, device: DeviceFacts, rows: u32, seconds: f64) -> Stats {
+pub(super) fn stats(
+    context: &RenderContext,
+    resolved: &Resolved,
+    device: DeviceFacts,
+    rows: u32,
+    seconds: f64,
+) -> Stats {
     let Resolved { scene, technique, .. } = resolved;
-    let counts = Counts::new(resolved.pixels, technique.template(), &job.tally.snapshot());
+    let counts = Counts::new(resolved.pixels, technique.template(), &context.tally.snapshot());
     if counts.overruns > 0 {
         let rays = counts.overruns;
-        job.observer
+        context
+            .observer
             .note(&format!("{rays} rays were abandoned in the grid: the image may be wrong there; please report this"));
     }
     Stats {
@@ -44,7 +51,7 @@ pub(super) fn stats(job: &Job, resolved: &Resolved, device: DeviceFacts, rows: u
         settings: settings(resolved, device.kind, rows),
         device: DeviceStats { kind: device.kind, name: device.name },
         counts,
-        seconds: Seconds { build: scene.geometry.take_build_seconds(), render: seconds, ..job.seconds() },
+        seconds: Seconds { build: scene.geometry.take_build_seconds(), render: seconds, ..context.seconds() },
         memory: MemoryStats::now(device.peak_memory),
     }
 }

@@ -10,14 +10,14 @@ use crate::bands;
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::gathered::Gathering;
-use crate::job::{Job, Sampling};
 use crate::observer::Observer;
-use crate::plan::{Footprint, Plan};
+use crate::plan::{BytesPerRay, Plan};
 use crate::prepared::PreparedScene;
 use crate::probes::{GivenPoints, Probes, ROW};
+use crate::render_context::{RenderContext, Sampling};
 use crate::settings::{AmbientSource, Crop, Setting, Settings, Sharing};
 use crate::shading::facets::{directions, mirrored_share};
-use crate::techniques::{Request, Technique};
+use crate::techniques::{Technique, VisibilityQuery};
 use crate::view::{View, Window};
 
 /// More threads than any machine has logical CPUs would only wait for each other.
@@ -58,8 +58,8 @@ impl<'a> Resolved<'a> {
         let mut resolved = Resolved::within(points.bounds, points.scene, settings, observer)?;
         // What is asked for is the visibility of all lights.
         let lights = LightGroups { at_once: usize::MAX, ..resolved.plan.lights };
-        let Footprint { host, device } = footprint(points.scene, &resolved.technique, lights);
-        let footprint = Footprint { host: host + Probes::BYTES, device: device + Probes::BYTES };
+        let BytesPerRay { host, device } = bytes_per_ray(points.scene, &resolved.technique, lights);
+        let bytes_per_ray = BytesPerRay { host: host + Probes::BYTES, device: device + Probes::BYTES };
         resolved.plan = Plan {
             size: [ROW, points.rows()],
             antialiasing: None,
@@ -69,7 +69,7 @@ impl<'a> Resolved<'a> {
             gathering: None,
             lights,
             most_rows: None,
-            footprint,
+            bytes_per_ray,
             ..resolved.plan
         };
         resolved.pixels = points.len() as u64;
@@ -88,7 +88,7 @@ impl<'a> Resolved<'a> {
         let camera = camera(scene, settings);
         // What is chosen does not depend on the part of the image.
         let whole = View::new(&camera, settings.size);
-        let technique = Technique::resolve(&Request { scene, settings, view: &whole, observer, bounds })?;
+        let technique = Technique::resolve(&VisibilityQuery { scene, settings, view: &whole, observer, bounds })?;
         let lights = LightGroups { lights: scene.scene.lights.len(), at_once: technique.lights_at_once() };
         let samples = Technique::samples(settings);
         let bounces = settings.bounces_in(&scene.scene);
@@ -124,7 +124,7 @@ impl<'a> Resolved<'a> {
             left,
             kept: 0,
             reserved: 0,
-            footprint: footprint(scene, &technique, lights),
+            bytes_per_ray: bytes_per_ray(scene, &technique, lights),
         };
         let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };
         let pixels = plan.pixels();
@@ -133,9 +133,9 @@ impl<'a> Resolved<'a> {
 }
 
 impl Resolved<'_> {
-    /// The job for an image or given points.
-    pub(super) fn job<'b>(&self, observer: &'b dyn Observer) -> Job<'b> {
-        Job::new(observer, self.sampling)
+    /// The context for an image or given points.
+    pub(super) fn context<'b>(&self, observer: &'b dyn Observer) -> RenderContext<'b> {
+        RenderContext::new(observer, self.sampling)
             .with_short_tests(self.settings.short_tests)
             .with_shadow_tests(self.settings.shadow_tests)
             .with_pixel_samples(self.plan.antialiasing.as_ref().map_or(1, |all| all.samples))
@@ -192,11 +192,11 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
 }
 
 /// The bytes of a ray for the technique, and for what surfaces that are not opaque leave of the lights.
-fn footprint(scene: &PreparedScene, technique: &Technique, lights: LightGroups) -> Footprint {
+fn bytes_per_ray(scene: &PreparedScene, technique: &Technique, lights: LightGroups) -> BytesPerRay {
     let held = lights.held() as u64;
-    let Footprint { host, device } = technique.footprint(held);
+    let BytesPerRay { host, device } = technique.bytes_per_ray(held);
     let colors = if scene.lets_through() { size_of::<Vec3>() as u64 * held } else { 0 };
-    Footprint { host: host + colors, device: device + colors }
+    BytesPerRay { host: host + colors, device: device + colors }
 }
 
 /// In how many directions mirrors reflect a ray, at most.

@@ -52,7 +52,7 @@ DEVICE Vec3 facets_whole(FacetShare share, float again, Vec3 f0, float f90) {
 COLD void set_facets(const FacetShare *table, FacetSight sight, Material *own) {
     const Vec3 base = own->kd, layer = own->ks;
     const float metallic = own->metallic, opacity = own->opacity, roughness = own->roughness;
-    const float cosine = fmaxf(sight.cosine, LEAST_VIEW_COSINE);
+    const float cosine = fmaxf(sight.cosine, MIN_VIEW_COSINE);
     // 1. and 2.
     const FacetShare share = facets_of_all(table, roughness, cosine);
     const float again = 1.0f / (share.normal + share.grazing) - 1.0f;
@@ -73,7 +73,7 @@ COLD void set_facets(const FacetShare *table, FacetSight sight, Material *own) {
     own->ka = own->all;
 
     // 4.
-    const float width = fmaxf(roughness * roughness, LEAST_FACET_WIDTH), seen = 0.25f * sight.spread;
+    const float width = fmaxf(roughness * roughness, MIN_FACET_WIDTH), seen = 0.25f * sight.spread;
     own->square = width * width;
     own->seen_square = own->square + seen * seen;
     own->shown = shown;
@@ -142,7 +142,7 @@ COLD Drawn facets_drawn(const Material &own, Vec3 normal, Vec3 view, float u, fl
     const float along_square = length_squared(slope);
     const Vec3 axis = fabsf(normal.x) < 0.5f ? Vec3{1.0f, 0.0f, 0.0f} : Vec3{0.0f, 1.0f, 0.0f};
     const Vec3 beside = cross(normal, axis);
-    const Vec3 along = along_square > LEAST_SMOOTH_SQUARE ? slope / sqrtf(along_square) : beside / length(beside);
+    const Vec3 along = along_square > MIN_SMOOTH_SQUARE ? slope / sqrtf(along_square) : beside / length(beside);
     const Vec3 across = cross(normal, along);
     const float cosine = own.cosine, width = own.roughness * own.roughness;
     const float sine = sqrtf(fmaxf(1.0f - cosine * cosine, 0.0f));
@@ -177,15 +177,15 @@ COLD Drawn facets_drawn(const Material &own, Vec3 normal, Vec3 view, float u, fl
 // In how many directions a mirror with facets reflects a ray, a power of two; the share `weight` of their radiance reaches the pixel.
 DEVICE unsigned facets_directions(float weight, float roughness) {
     const float wide = fminf(roughness * roughness / WIDE_LOBE, 1.0f);
-    const float wanted = (float)MOST_DIRECTIONS * wide * sqrtf(weight);
+    const float wanted = (float)MAX_DIRECTIONS * wide * sqrtf(weight);
     unsigned count = 1;
-    while (count < MOST_DIRECTIONS && (float)count < wanted)
+    while (count < MAX_DIRECTIONS && (float)count < wanted)
         count *= 2;
     return count;
 }
 
 // The cone that a mirror with facets reflects in each of `count` directions, if a smooth one reflects `cone`.
 DEVICE Cone facets_blurred(Cone cone, float roughness, unsigned count, float weight) {
-    const float all = fminf(fmaxf((float)count / weight, 1.0f), MOST_CONES);
+    const float all = fminf(fmaxf((float)count / weight, 1.0f), MAX_CONES);
     return Cone{cone.width, fabsf(cone.spread) + WIDTH_OF_LOBE * (roughness * roughness) / sqrtf(all)};
 }

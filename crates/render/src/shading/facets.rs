@@ -25,8 +25,8 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 use lightmesh_layout::constants::{
-    FACET_PLACES, FRAC_PI_2, LEAST_FACET_WIDTH, LEAST_SMOOTH_SQUARE, LEAST_VIEW_COSINE, LIGHTS_END, LIGHTS_FADE,
-    MIRROR_ENDS, MIRROR_FADES, MOST_CONES, MOST_DIRECTIONS, PARTS_OF_FADE, WIDE_LOBE, WIDTH_OF_LOBE,
+    FACET_PLACES, FRAC_PI_2, LIGHTS_END, LIGHTS_FADE, MAX_CONES, MAX_DIRECTIONS, MIN_FACET_WIDTH, MIN_SMOOTH_SQUARE,
+    MIN_VIEW_COSINE, MIRROR_ENDS, MIRROR_FADES, PARTS_OF_FADE, WIDE_LOBE, WIDTH_OF_LOBE,
 };
 use lightmesh_scene::Facets;
 
@@ -75,7 +75,7 @@ impl Lobe {
     /// The lobe of a surface point whose coefficients are those of its material with its tint; they become those of its reflections.
     pub fn new(facets: &Facets, coefficients: &mut Coefficients, sight: &Sight) -> Lobe {
         let Coefficients { kd: base, ks: layer, opacity, .. } = *coefficients;
-        let cosine = sight.cosine.max(LEAST_VIEW_COSINE);
+        let cosine = sight.cosine.max(MIN_VIEW_COSINE);
         // 1. and 2.
         let [a, b] = of_all(facets.roughness, cosine);
         let again = 1.0 / (a + b) - 1.0;
@@ -113,7 +113,7 @@ impl Lobe {
         // Along the surface to the eye, and across.
         let slope = view - normal.dot(view) * normal;
         let square = slope.length_squared();
-        let along = if square > LEAST_SMOOTH_SQUARE {
+        let along = if square > MIN_SMOOTH_SQUARE {
             slope / square.sqrt()
         } else {
             let axis = if normal.x.abs() < 0.5 { Vec3::X } else { Vec3::Y };
@@ -199,9 +199,9 @@ fn around(turn: f32) -> [f32; 2] {
 /// In how many directions a mirror with facets reflects a ray, a power of two; the share `weight` of their radiance reaches the pixel.
 pub(crate) fn directions(weight: f32, roughness: f32) -> u32 {
     let wide = (roughness * roughness / WIDE_LOBE).min(1.0);
-    let wanted = MOST_DIRECTIONS as f32 * wide * weight.sqrt();
+    let wanted = MAX_DIRECTIONS as f32 * wide * weight.sqrt();
     let mut count = 1;
-    while count < MOST_DIRECTIONS && (count as f32) < wanted {
+    while count < MAX_DIRECTIONS && (count as f32) < wanted {
         count *= 2;
     }
     count
@@ -210,7 +210,7 @@ pub(crate) fn directions(weight: f32, roughness: f32) -> u32 {
 /// The cone that a mirror with facets reflects in each of `count` directions, if a smooth one reflects `cone`; `weight` is the share of a ray.
 /// Together they are as wide as the lobe.
 pub(crate) fn blurred(cone: Cone, roughness: f32, count: u32, weight: f32) -> Cone {
-    let all = (count as f32 / weight).clamp(1.0, MOST_CONES);
+    let all = (count as f32 / weight).clamp(1.0, MAX_CONES);
     Cone { spread: cone.spread.abs() + WIDTH_OF_LOBE * (roughness * roughness) / all.sqrt(), ..cone }
 }
 
@@ -228,7 +228,7 @@ pub(crate) fn mirrored_share(roughness: f32) -> f32 {
 
 /// α².
 fn square_of(roughness: f32) -> f32 {
-    let width = (roughness * roughness).max(LEAST_FACET_WIDTH);
+    let width = (roughness * roughness).max(MIN_FACET_WIDTH);
     width * width
 }
 
@@ -256,7 +256,7 @@ pub(crate) fn table() -> &'static [[f32; 2]] {
         let place = |index: u32| f64::from(index) / f64::from(FACET_PLACES - 1);
         let entry = |index: u32| {
             let (roughness, root) = (place(index % FACET_PLACES), place(index / FACET_PLACES));
-            integrated(roughness, (root * root).max(f64::from(LEAST_VIEW_COSINE)))
+            integrated(roughness, (root * root).max(f64::from(MIN_VIEW_COSINE)))
         };
         (0..FACET_PLACES * FACET_PLACES).map(entry).collect()
     })
@@ -264,7 +264,7 @@ pub(crate) fn table() -> &'static [[f32; 2]] {
 
 /// a and b by numbers: the mean over the facets that are seen (Dupuy, Benyoub, *Sampling Visible GGX Normals with Spherical Caps*, HPG 2023).
 fn integrated(roughness: f64, cosine: f64) -> [f32; 2] {
-    let width = (roughness * roughness).max(f64::from(LEAST_FACET_WIDTH));
+    let width = (roughness * roughness).max(f64::from(MIN_FACET_WIDTH));
     let eye = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let stretched = DVec3::new(width * eye.x, 0.0, eye.z).normalize();
     let shadowing = |cosine: f64| (cosine * cosine * (1.0 - width * width) + width * width).sqrt();

@@ -16,7 +16,7 @@ DEVICE bool image_frame(const TintSources &sources, const Texture &texture, cons
     const Vec3 across = along - dot(smooth, along) * smooth;
     const float square = length_squared(across);
     // Also where there are no numbers.
-    if (!(area != 0.0f && square > LEAST_SMOOTH_SQUARE))
+    if (!(area != 0.0f && square > MIN_SMOOTH_SQUARE))
         return false;
     right = across / sqrtf(square);
     const Vec3 other = cross(smooth, right);
@@ -56,7 +56,7 @@ COLD Vec3 mapped_normal(TintSources sources, const Material *material, Sighting 
     const float side = shows_back(sources, corners, hit, facing) ? -1.0f : 1.0f;
     Vec3 normal = z * smooth + side * (x * right + y * top);
     const float square = length_squared(normal);
-    if (!(square > LEAST_SMOOTH_SQUARE && is_finite(square)))
+    if (!(square > MIN_SMOOTH_SQUARE && is_finite(square)))
         return smooth;
     normal = normal / sqrtf(square);
 
@@ -82,7 +82,7 @@ COLD Vec3 mean_normal(TintSources sources, const Material *material, Sighting fr
         sum = sum + mapped_normal(sources, material, from, hit, smooth);
     }
     const float square = length_squared(sum);
-    return square > LEAST_SMOOTH_SQUARE ? sum / sqrtf(square) : own;
+    return square > MIN_SMOOTH_SQUARE ? sum / sqrtf(square) : own;
 }
 
 // The cosine of light along `direction`, which is `cosine` by the image, for a surface that is `smooth` without it. Where the light is low, what
@@ -99,12 +99,12 @@ DEVICE float softened(Vec3 smooth, Vec3 direction, float cosine) {
 // between both.
 COLD Vec3 mirroring(Vec3 normal, Vec3 facing, Vec3 view) {
     const Vec3 direction = 2.0f * dot(normal, view) * normal - view;
-    const float least = fminf(LEAST_MIRRORED_COSINE, 0.5f * dot(facing, view));
+    const float least = fminf(MIN_MIRRORED_COSINE, 0.5f * dot(facing, view));
     const float height = dot(facing, direction);
     if (height >= least)
         return normal;
     const Vec3 raised = direction + (least - height) * facing;
     const Vec3 middle = raised / larger(length(raised), F32_MIN_POSITIVE) + view;
     const float square = length_squared(middle);
-    return square > LEAST_SMOOTH_SQUARE ? middle / sqrtf(square) : facing;
+    return square > MIN_SMOOTH_SQUARE ? middle / sqrtf(square) : facing;
 }

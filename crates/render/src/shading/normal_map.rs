@@ -16,7 +16,7 @@
 
 use glam::{Vec2, Vec3};
 use lightmesh_layout::constants::{
-    LEAST_MIRRORED_COSINE, LEAST_SMOOTH_SQUARE, LOW_LIGHT, NORMAL_CODE_ONE, NORMAL_CODE_ZERO,
+    LOW_LIGHT, MIN_MIRRORED_COSINE, MIN_SMOOTH_SQUARE, NORMAL_CODE_ONE, NORMAL_CODE_ZERO,
 };
 use lightmesh_scene::{Geometry, Material};
 use lightmesh_trace::accel::{Hit, Ray};
@@ -86,7 +86,7 @@ pub(super) fn mean_normal<'h>(
         sum += mapped_normal(scene, material, (ray, cone), hit, shading_normal(mesh, hit, point.normal));
     }
     let square = sum.length_squared();
-    if square > LEAST_SMOOTH_SQUARE { sum / square.sqrt() } else { own }
+    if square > MIN_SMOOTH_SQUARE { sum / square.sqrt() } else { own }
 }
 
 /// The unit normal by the image, where `smooth` is that without it.
@@ -115,7 +115,7 @@ pub(super) fn mapped_normal(
     let side = if shows_back(scene, ray, hit) { -1.0 } else { 1.0 };
     let normal = z * smooth + side * (x * right + y * top);
     let square = normal.length_squared();
-    if !(square > LEAST_SMOOTH_SQUARE && square.is_finite()) {
+    if !(square > MIN_SMOOTH_SQUARE && square.is_finite()) {
         return smooth;
     }
     let normal = normal / square.sqrt();
@@ -142,7 +142,7 @@ fn frame(scene: &PreparedScene, image: &Image, hit: &Hit, smooth: Vec3) -> Optio
     let across = along - smooth.dot(along) * smooth;
     let square = across.length_squared();
     // Also where there are no numbers.
-    if !(area != 0.0 && square > LEAST_SMOOTH_SQUARE) {
+    if !(area != 0.0 && square > MIN_SMOOTH_SQUARE) {
         return None;
     }
     let right = across / square.sqrt();
@@ -164,7 +164,7 @@ fn shows_back(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> bool {
 /// between both.
 pub fn mirroring(normal: Vec3, facing: Vec3, view: Vec3) -> Vec3 {
     let direction = 2.0 * normal.dot(view) * normal - view;
-    let least = LEAST_MIRRORED_COSINE.min(0.5 * facing.dot(view));
+    let least = MIN_MIRRORED_COSINE.min(0.5 * facing.dot(view));
     let height = facing.dot(direction);
     if height >= least {
         return normal;
@@ -172,5 +172,5 @@ pub fn mirroring(normal: Vec3, facing: Vec3, view: Vec3) -> Vec3 {
     let raised = direction + (least - height) * facing;
     let middle = raised / raised.length().max(f32::MIN_POSITIVE) + view;
     let square = middle.length_squared();
-    if square > LEAST_SMOOTH_SQUARE { middle / square.sqrt() } else { facing }
+    if square > MIN_SMOOTH_SQUARE { middle / square.sqrt() } else { facing }
 }

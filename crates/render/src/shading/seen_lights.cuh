@@ -58,7 +58,7 @@ DEVICE Met meets(const Beam &beam, const Light &light, Vec3 normal) {
 // The radiance of a flat light.
 DEVICE Vec3 shining(const Light &light, float distance, float cosine, float area) {
     const float per = light.inverse_square ? 1.0f : PI * (distance * distance);
-    const float seen = light.surface ? area : area * larger(cosine, LEAST_SHINING_COSINE);
+    const float seen = light.surface ? area : area * larger(cosine, MIN_SHINING_COSINE);
     return (per / seen) * light.intensity;
 }
 
@@ -101,7 +101,7 @@ DEVICE Seen sees_rectangle(const Beam &beam, const Light &light) {
     if (!met.is_met)
         return Seen{};
     // 2.
-    const float width = beam_width(beam, met.distance), least = larger(met.cosine, LEAST_SEEN_COSINE);
+    const float width = beam_width(beam, met.distance), least = larger(met.cosine, MIN_SEEN_COSINE);
     const float share = within_half(beam, met.place, light.half_u, width, least) * within_half(beam, met.place, light.half_v, width, least);
     return Seen{met.distance, share, shining(light, met.distance, met.cosine, 4.0f * quarter)};
 }
@@ -112,7 +112,7 @@ DEVICE Seen sees_disc(const Beam &beam, const Light &light) {
         return Seen{};
     // 2.
     const float aside = length(met.place);
-    const float slope = aside > 0.0f ? dot(beam.direction, met.place) / aside / larger(met.cosine, LEAST_SEEN_COSINE) : 0.0f;
+    const float slope = aside > 0.0f ? dot(beam.direction, met.place) / aside / larger(met.cosine, MIN_SEEN_COSINE) : 0.0f;
     const float share = within_circle(light.radius, aside, beam_width(beam, met.distance) * sqrtf(1.0f + slope * slope));
     return Seen{met.distance, share, shining(light, met.distance, met.cosine, PI * (light.radius * light.radius))};
 }

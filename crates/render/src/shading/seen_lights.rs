@@ -19,7 +19,7 @@
 use std::f32::consts::{FRAC_1_PI, PI};
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LEAST_SEEN_COSINE, LEAST_SHINING_COSINE, SAME_DISTANCE};
+use lightmesh_layout::constants::{MIN_SEEN_COSINE, MIN_SHINING_COSINE, SAME_DISTANCE};
 use lightmesh_layout::scene;
 use lightmesh_scene::{Falloff, Light, LightKind, Lights};
 use rayon::prelude::*;
@@ -181,7 +181,7 @@ impl Beam {
         let quarter = across.length();
         let (place, distance, cosine) = self.meets(light, center, across / quarter)?;
         // 2.
-        let (width, least) = (self.width(distance), cosine.max(LEAST_SEEN_COSINE));
+        let (width, least) = (self.width(distance), cosine.max(MIN_SEEN_COSINE));
         let within = |half: Vec3| {
             let square = half.dot(half);
             let length = square.sqrt();
@@ -197,7 +197,7 @@ impl Beam {
         let (place, distance, cosine) = self.meets(light, center, light.surface.unwrap_or(normal))?;
         // 2.
         let aside = place.length();
-        let slope = if aside > 0.0 { self.direction.dot(place) / aside / cosine.max(LEAST_SEEN_COSINE) } else { 0.0 };
+        let slope = if aside > 0.0 { self.direction.dot(place) / aside / cosine.max(MIN_SEEN_COSINE) } else { 0.0 };
         let share = within_circle(radius, aside, self.width(distance) * (1.0 + slope * slope).sqrt());
         Some(Seen { distance, share, radiance: shining(light, distance, cosine, PI * (radius * radius)) })
     }
@@ -244,7 +244,7 @@ impl Beam {
 #[inline(always)]
 fn shining(light: &Light, distance: f32, cosine: f32, area: f32) -> Vec3 {
     let per = if light.falloff == Falloff::InverseSquare { 1.0 } else { PI * (distance * distance) };
-    let seen = if light.surface.is_some() { area } else { area * cosine.max(LEAST_SHINING_COSINE) };
+    let seen = if light.surface.is_some() { area } else { area * cosine.max(MIN_SHINING_COSINE) };
     (per / seen) * light.intensity
 }
 

@@ -6,12 +6,12 @@
 
 use fearless_simd::prelude::*;
 use glam::Vec3;
-use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
+use lightmesh_layout::constants::{MAX_ROWS, MAX_WORDS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_trace::accel::{Coverage, Triangle, Triangles};
 use lightmesh_trace::simd::{Axes, LANES};
 
-use super::sight::Sight;
+use super::projected_light::ProjectedLight;
 
 /// What is cut out of the triangles of eight lanes.
 #[derive(Clone, Copy)]
@@ -42,7 +42,7 @@ impl<'a> Cuts<'a> {
     }
 }
 
-/// Surface points, their sights and triangles, lane by lane.
+/// Surface points, the light as each sees it, and triangles, lane by lane.
 pub(super) struct Lines {
     pub(super) origin: [Vec3; LANES],
     pub(super) center: [Vec3; LANES],
@@ -67,14 +67,18 @@ pub(super) fn by_lane<S: Simd>([x, y, z]: Axes<S>) -> [Vec3; LANES] {
 pub(super) fn keep_stopped(
     cuts: &Cuts,
     from: &Lines,
-    (set, offsets): (&SampleRows, &[[f32; LANES]; MOST_ROWS as usize]),
+    (set, offsets): (&SampleRows, &[[f32; LANES]; MAX_ROWS as usize]),
     lanes: u32,
-    samples: &mut [[u32; LANES]; MOST_WORDS as usize],
+    samples: &mut [[u32; LANES]; MAX_WORDS as usize],
 ) {
     for lane in (0..LANES).filter(|&lane| lanes >> lane & 1 != 0 && cuts.numbers[lane] != 0) {
         let triangle = cuts.triangle(from, lane);
-        let sight =
-            Sight { center: from.center[lane], along: from.along[lane], across: from.across[lane], ..Sight::default() };
+        let projected = ProjectedLight {
+            center: from.center[lane],
+            along: from.along[lane],
+            across: from.across[lane],
+            ..ProjectedLight::default()
+        };
         let mut row = 0;
         for (word, samples) in samples.iter_mut().enumerate().take(set.words as usize) {
             let mut rest = samples[lane];
@@ -84,7 +88,7 @@ pub(super) fn keep_stopped(
                 while row + 1 < set.ends[word] as usize && set.place[row] + set.count[row] <= bit {
                     row += 1;
                 }
-                let target = sight.scaled_sample(set, row, (bit - set.place[row]) as f32, offsets[row][lane]);
+                let target = projected.scaled_sample(set, row, (bit - set.place[row]) as f32, offsets[row][lane]);
                 if !cuts.coverage.stops(&triangle, from.origin[lane], target) {
                     samples[lane] &= !(1 << bit);
                 }

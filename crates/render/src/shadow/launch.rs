@@ -9,7 +9,7 @@ use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_layout::stages::{Shadows, Weighed};
 
-use super::Aim;
+use super::ShadowTarget;
 use super::rows::Rows;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
@@ -92,14 +92,14 @@ pub(crate) struct WarpWork<'a, R: Runtime> {
 pub(crate) fn test_samples<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
-    aim: &Aim,
+    target: &ShadowTarget,
     (kernels, work): (&ByWords, WarpWork<R>),
     complete: impl Fn(Shadows) -> Shadows,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let scene = wave.scene;
     let dark = DeviceVisibility::dark(cuda, wave.rays.len(), wave.group())?;
     let visibility = DeviceVisibility { weighed: true, ..dark };
-    let sets = SampleSets::new(wave.rows(aim));
+    let sets = SampleSets::new(wave.rows(target));
     // What is seen of near lights by several sets.
     let lights = &scene.host.scene.lights;
     let sums = match sets.count > 1 && lights.iter().any(may_be_near) {
@@ -120,7 +120,7 @@ pub(crate) fn test_samples<R: Runtime>(
         let progress = progress(set + 1) - progress(set);
         let pieces =
             Work { units: work.units, cost: visibility.lights.len().max(1) as u64, first: work.first, progress };
-        cuda.in_pieces(wave.job, kernel, pieces, |piece| {
+        cuda.in_pieces(wave.context, kernel, pieces, |piece| {
             let shared = work.words + scene.search_words() + WARP * rows;
             let count = piece.end - piece.start;
             let warps = match work.taken {

@@ -4,9 +4,9 @@
 pub(crate) mod cuts;
 pub(crate) mod launch;
 pub(crate) mod occlusion;
+pub(crate) mod projected_light;
 pub(crate) mod rows;
 pub(crate) mod sample_ray;
-pub(crate) mod sight;
 pub(crate) mod terminator;
 pub(crate) mod weights;
 
@@ -19,7 +19,7 @@ use lightmesh_trace::accel::Ray;
 
 use crate::counters::Tally;
 use crate::data::wave::{HostWave, Wave};
-use crate::job::Sampling;
+use crate::render_context::Sampling;
 use crate::sampling::{Pattern, before_body, disk_radius, light_center, light_point};
 use crate::surface::{SurfacePoint, long_segment};
 use rows::Rows;
@@ -29,36 +29,36 @@ pub(crate) const SEGMENTS: usize = 4 * 1024;
 
 /// Which points of a light shadow rays are cast to.
 #[derive(Clone, Copy, Debug)]
-pub enum Aim {
+pub enum ShadowTarget {
     /// One ray to the centre.
-    Middle,
+    Center,
     /// Points distributed over a light that has an extent, with the sampling of the image.
-    Extent(Sampling),
+    Area(Sampling),
 }
 
 impl<Scene, Rays, Hits> Wave<'_, Scene, Rays, Hits> {
     /// Shadow rays to the samples of each light that a ray of this wave takes.
-    pub(crate) fn aim(&self) -> Aim {
-        Aim::Extent(self.sampling())
+    pub(crate) fn shadow_target(&self) -> ShadowTarget {
+        ShadowTarget::Area(self.sampling())
     }
 
     /// The rows of the samples that rays are aimed at.
-    pub(crate) fn rows(&self, aim: &Aim) -> Arc<Rows> {
-        let samples = match aim {
-            Aim::Middle => 1,
-            Aim::Extent(sampling) => sampling.samples,
+    pub(crate) fn rows(&self, target: &ShadowTarget) -> Arc<Rows> {
+        let samples = match target {
+            ShadowTarget::Center => 1,
+            ShadowTarget::Area(sampling) => sampling.samples,
         };
-        self.job.rows.of(samples)
+        self.context.rows.of(samples)
     }
 }
 
-impl Aim {
+impl ShadowTarget {
     /// Whether more than the centre of a light counts.
     #[inline(always)]
     fn is_spread_over(&self, light: &Light) -> bool {
         match self {
-            Aim::Middle => false,
-            Aim::Extent(sampling) => {
+            ShadowTarget::Center => false,
+            ShadowTarget::Area(sampling) => {
                 let spread = matches!(light.kind, LightKind::Point { spread, .. } if spread > 0.0);
                 light.has_size() || (sampling.spread && spread && sampling.samples > 1)
             }
@@ -68,7 +68,7 @@ impl Aim {
     /// Number of shadow rays from a point to a light.
     pub(crate) fn samples(&self, light: &Light) -> u32 {
         match self {
-            Aim::Extent(sampling) if self.is_spread_over(light) => sampling.samples,
+            ShadowTarget::Area(sampling) if self.is_spread_over(light) => sampling.samples,
             _ => 1,
         }
     }
@@ -87,9 +87,17 @@ pub(crate) struct Targets<'a> {
 impl<'a> Targets<'a> {
     /// Those of light number `index` from `from`; `key` selects the random pattern.
     #[inline(always)]
-    pub(crate) fn new(aim: &Aim, (index, light): (usize, &'a Light), from: Vec3, reach: f32, key: u64) -> Targets<'a> {
-        let pattern = match aim {
-            Aim::Extent(sampling) if aim.is_spread_over(light) => Some(Pattern::new(sampling.seed, key, index)),
+    pub(crate) fn new(
+        target: &ShadowTarget,
+        (index, light): (usize, &'a Light),
+        from: Vec3,
+        reach: f32,
+        key: u64,
+    ) -> Targets<'a> {
+        let pattern = match target {
+            ShadowTarget::Area(sampling) if target.is_spread_over(light) => {
+                Some(Pattern::new(sampling.seed, key, index))
+            }
             _ => None,
         };
         Targets { light, from, reach, pattern }
@@ -168,13 +176,13 @@ pub(crate) fn size(light: &Light, reach: f32) -> f32 {
 
 /// The visible share of light number `index` from the surface point of `ray`, without χ: the fallback where no light point is used.
 pub(crate) fn fallback(wave: &HostWave, ray: usize, point: &SurfacePoint, index: usize) -> f32 {
-    let (aim, light) = (Aim::Extent(wave.job.sampling.of_light_points()), &wave.lights()[index]);
-    let reach = wave.scene.geometry.reach(point.origin);
-    let targets = Targets::new(&aim, (index, light), point.origin, reach, wave.rays.key(ray));
-    let samples = aim.samples(light);
+    let (target, light) = (ShadowTarget::Area(wave.context.sampling.of_light_points()), &wave.lights()[index]);
+    let reach = wave.scene.geometry.sun_distance(point.origin);
+    let targets = Targets::new(&target, (index, light), point.origin, reach, wave.rays.key(ray));
+    let samples = target.samples(light);
     let mut segments = Vec::with_capacity(samples as usize);
     each_shadow_ray(point, &targets, samples, |segment| segments.push(segment));
-    Tally::add(&wave.job.tally.shadow_rays, segments.len() as u64);
+    Tally::add(&wave.context.tally.shadow_rays, segments.len() as u64);
     let seen = hidden(wave, &segments).into_iter().filter(|hidden| !hidden).count();
     seen as f32 / samples as f32
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/coverage.cuh"
-#include "shadow/sight.cuh"
+#include "shadow/projected_light.cuh"
 
 // A triangle with what is the same for all surface points: three corners, and in their last words the normal.
 struct Occluding {
@@ -27,8 +27,8 @@ struct Linear {
 };
 
 // The function n · d on the emitter.
-DEVICE Linear linear(const Sight &sight, const Vec3 &n) {
-    return Linear{fused_dot(n, sight.center), fused_dot(n, sight.along), fused_dot(n, sight.across)};
+DEVICE Linear linear(const Sight &projected, const Vec3 &n) {
+    return Linear{fused_dot(n, projected.center), fused_dot(n, projected.along), fused_dot(n, projected.across)};
 }
 
 // More than a function changes from the middle of the emitter to any sample.
@@ -68,12 +68,12 @@ struct RowBounds {
 // Cuts off where the function is negative, or positive if not `outer`.
 template <unsigned COUNT>
 DEVICE void cut(RowBounds<COUNT> &bounds, unsigned k, const Linear &f, bool outer) {
-    const float slope = fabsf(f.x) < LEAST_SLOPE ? copysignf(LEAST_SLOPE, f.x) : f.x;
+    const float slope = fabsf(f.x) < MIN_SLOPE ? copysignf(MIN_SLOPE, f.x) : f.x;
     const float inverse = -(1.0f / slope);
     const float start = f.start * inverse;
     const bool low = (slope > 0.0f) == outer;
-    bounds.low[k] = low ? start : -BEYOND;
-    bounds.high[k] = low ? BEYOND : start;
+    bounds.low[k] = low ? start : -UNBOUNDED;
+    bounds.high[k] = low ? UNBOUNDED : start;
     bounds.step[k] = f.y * inverse;
 }
 
@@ -93,20 +93,20 @@ struct RowTable {
 // Fills the table of a shape; `shared` has ROW_TABLE_WORDS.
 DEVICE void fill_row_table(const SampleRows &set, unsigned *shared) {
     const unsigned lane = lane_of_thread();
-    if (lane < MOST_ROWS) {
+    if (lane < MAX_ROWS) {
         const unsigned samples = (1u << set.count[lane]) - 1;
         reinterpret_cast<float4 *>(shared)[lane] =
             float4{set.y[lane], set.density[lane], __uint_as_float(samples), __uint_as_float(set.place[lane])};
     }
-    if (lane < MOST_WORDS)
-        shared[4 * MOST_ROWS + lane] = set.ends[lane];
+    if (lane < MAX_WORDS)
+        shared[4 * MAX_ROWS + lane] = set.ends[lane];
     __syncwarp();
 }
 
 // The table of a shape, of the tables of discs and rectangles.
 DEVICE RowTable row_table(const unsigned *tables, Shape shape, float *offsets) {
     const unsigned *own = tables + (shape == SHAPE_RECTANGLE ? ROW_TABLE_WORDS : 0);
-    return RowTable{reinterpret_cast<const float4 *>(own), own + 4 * MOST_ROWS, offsets};
+    return RowTable{reinterpret_cast<const float4 *>(own), own + 4 * MAX_ROWS, offsets};
 }
 
 // The samples of a row within the first COUNT bounds, in their places. `offset` is the place of x = 0.
@@ -139,10 +139,10 @@ DEVICE void set_bits(const Bounds &bounds, const RowTable &table, unsigned *bits
 
 // The samples that count and are in front of the surface, before anything hides them.
 template <unsigned WORDS>
-DEVICE void samples_above_horizon(const SurfacePoint &point, const Sight &sight, const SampleRows &set, const RowTable &table,
+DEVICE void samples_above_horizon(const SurfacePoint &point, const Sight &projected, const SampleRows &set, const RowTable &table,
                                   unsigned *bits) {
     RowBounds<1> bounds;
-    cut(bounds, 0, linear(sight, point.normal), true);
+    cut(bounds, 0, linear(projected, point.normal), true);
     set_bits<WORDS, 1>(bounds, table, bits);
     unsigned row = 0;
     UNROLL
@@ -150,14 +150,14 @@ DEVICE void samples_above_horizon(const SurfacePoint &point, const Sight &sight,
         unsigned valid = 0;
         ROLLED
         for (; row < set.ends[word]; ++row)
-            valid |= valid_samples(sight, set, row) << set.place[row];
+            valid |= valid_samples(projected, set, row) << set.place[row];
         bits[word] &= valid;
     }
 }
 
 // Whether the centre is in front of the surface.
-DEVICE bool center_above_horizon(const SurfacePoint &point, const Sight &sight) {
-    return fused_dot(point.normal, sight.center) > 0.0f;
+DEVICE bool center_above_horizon(const SurfacePoint &point, const Sight &projected) {
+    return fused_dot(point.normal, projected.center) > 0.0f;
 }
 
 // Whether a function is certainly negative on the whole emitter; positive if not `outer`.
@@ -213,7 +213,7 @@ COLD Samples<WORDS> stopped_samples(Coverage coverage, unsigned cut, Corners cor
 
 // Clears the bits of the samples that a triangle hides. The lanes of a warp come together; only those that are `alive` matter.
 template <unsigned WORDS>
-DEVICE void hide(const SurfacePoint &point, const Sight &sight, const Hiding &hiding, const RowTable &table, bool alive,
+DEVICE void hide(const SurfacePoint &point, const Sight &projected, const Hiding &hiding, const RowTable &table, bool alive,
                  unsigned *seen) {
     const float4 *triangle = hiding.parts;
     const Seeing own = seeing(point, triangle);
@@ -223,13 +223,13 @@ DEVICE void hide(const SurfacePoint &point, const Sight &sight, const Hiding &hi
     bool matters = alive && own.matters;
     UNROLL
     for (unsigned k = 0; k < 3; ++k) {
-        sides[k] = linear(sight, side(own, triangle, k));
+        sides[k] = linear(projected, side(own, triangle, k));
         matters = matters && !never(sides[k], outer);
     }
     if (!__any_sync(ALL_LANES, matters))
         return;
-    Linear beyond = linear(sight, plane_of(triangle));
-    beyond.start = fmaf(-own.volume, sight.end, beyond.start);
+    Linear beyond = linear(projected, plane_of(triangle));
+    beyond.start = fmaf(-own.volume, projected.end, beyond.start);
     // All of most emitters lies beyond the plane; then that bounds no row.
     const bool clear = (outer ? beyond.start : -beyond.start) > range_of(beyond);
     unsigned hidden[WORDS];
@@ -248,7 +248,7 @@ DEVICE void hide(const SurfacePoint &point, const Sight &sight, const Hiding &hi
         UNROLL
         for (unsigned word = 0; word < WORDS; ++word)
             all.bits[word] = matters ? hidden[word] & seen[word] : 0;
-        const Lines from = {point.origin, sight.center, sight.along, sight.across};
+        const Lines from = {point.origin, projected.center, projected.along, projected.across};
         all = stopped_samples<WORDS>(*hiding.coverage, *hiding.cut, corners_of(triangle), from, table, all);
         UNROLL
         for (unsigned word = 0; word < WORDS; ++word)
@@ -260,19 +260,19 @@ DEVICE void hide(const SurfacePoint &point, const Sight &sight, const Hiding &hi
 }
 
 // Whether a triangle hides the centre.
-DEVICE bool hides_center(const SurfacePoint &point, const Sight &sight, const Hiding &hiding) {
+DEVICE bool hides_center(const SurfacePoint &point, const Sight &projected, const Hiding &hiding) {
     const float4 *triangle = hiding.parts;
     const Seeing own = seeing(point, triangle);
-    const float beyond = fmaf(-own.volume, sight.end, fused_dot(plane_of(triangle), sight.center));
+    const float beyond = fmaf(-own.volume, projected.end, fused_dot(plane_of(triangle), projected.center));
     float least = beyond, most = beyond;
     UNROLL
     for (unsigned k = 0; k < 3; ++k) {
-        const float f = fused_dot(side(own, triangle, k), sight.center);
+        const float f = fused_dot(side(own, triangle, k), projected.center);
         least = fminf(least, f);
         most = fmaxf(most, f);
     }
     const bool hides = own.matters && (own.volume > 0.0f ? least >= 0.0f : most <= 0.0f);
     if (!hides || hiding.coverage == nullptr || *hiding.cut == 0)
         return hides;
-    return stops_cut(*hiding.coverage, *hiding.cut, corners_of(triangle), point.origin, sight.center);
+    return stops_cut(*hiding.coverage, *hiding.cut, corners_of(triangle), point.origin, projected.center);
 }

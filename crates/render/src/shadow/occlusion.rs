@@ -24,21 +24,21 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8, mask32x8, u32x8};
 use glam::Vec3;
-use lightmesh_layout::constants::{BEYOND, LEAST_SLOPE, MOST_ROWS, MOST_WORDS};
+use lightmesh_layout::constants::{MAX_ROWS, MAX_WORDS, MIN_SLOPE, UNBOUNDED};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_trace::accel::Triangles;
 use lightmesh_trace::simd::{Axes, LANES, difference, fused_cross, fused_dot, splat, sum};
 
 use super::cuts::{Cuts, Lines, by_lane, keep_stopped, stopped_centers};
-use super::sight::Sight;
+use super::projected_light::ProjectedLight;
 use crate::surface::SurfacePoint;
 
 /// Bits of samples, by word, in each lane.
-pub(crate) type Bits<S> = [u32x8<S>; MOST_WORDS as usize];
+pub(crate) type Bits<S> = [u32x8<S>; MAX_WORDS as usize];
 
-/// Surface points and their sights of a light, one in each lane.
+/// Surface points and a light as each sees it, one in each lane.
 #[derive(Clone, Copy)]
-pub struct Sights<S: Simd> {
+pub struct ProjectedLights<S: Simd> {
     origin: Axes<S>,
     normal: Axes<S>,
     center: Axes<S>,
@@ -48,34 +48,34 @@ pub struct Sights<S: Simd> {
 }
 
 /// The places of x = 0 in each row of samples, by lane.
-pub(crate) type Offsets<S> = [f32x8<S>; MOST_ROWS as usize];
+pub(crate) type Offsets<S> = [f32x8<S>; MAX_ROWS as usize];
 
-impl<S: Simd> Sights<S> {
+impl<S: Simd> ProjectedLights<S> {
     /// The same in all lanes.
     #[inline(always)]
-    pub fn splat(simd: S, point: &SurfacePoint, sight: &Sight) -> Sights<S> {
-        Sights {
+    pub fn splat(simd: S, point: &SurfacePoint, projected: &ProjectedLight) -> ProjectedLights<S> {
+        ProjectedLights {
             origin: splat(simd, point.origin),
             normal: splat(simd, point.normal),
-            center: splat(simd, sight.center),
-            along: splat(simd, sight.along),
-            across: splat(simd, sight.across),
-            end: f32x8::splat(simd, sight.end),
+            center: splat(simd, projected.center),
+            along: splat(simd, projected.along),
+            across: splat(simd, projected.across),
+            end: f32x8::splat(simd, projected.end),
         }
     }
 
     /// One in each lane; lanes without one repeat the first.
     #[inline(always)]
-    pub(crate) fn gather(simd: S, points: &[SurfacePoint], sights: &[Sight]) -> Sights<S> {
+    pub(crate) fn gather(simd: S, points: &[SurfacePoint], projected_lights: &[ProjectedLight]) -> ProjectedLights<S> {
         let mut numbers = [[0.0; LANES]; 16];
         for lane in 0..LANES {
             let from = if lane < points.len() { lane } else { 0 };
-            let (point, sight) = (&points[from], &sights[from]);
-            let vectors = [point.origin, point.normal, sight.center, sight.along, sight.across];
+            let (point, projected) = (&points[from], &projected_lights[from]);
+            let vectors = [point.origin, point.normal, projected.center, projected.along, projected.across];
             for (axes, vector) in numbers.chunks_exact_mut(3).zip(vectors) {
                 (axes[0][lane], axes[1][lane], axes[2][lane]) = (vector.x, vector.y, vector.z);
             }
-            numbers[15][lane] = sight.end;
+            numbers[15][lane] = projected.end;
         }
         let load = |first: usize| {
             [
@@ -85,7 +85,7 @@ impl<S: Simd> Sights<S> {
             ]
         };
         let end = f32x8::from_slice(simd, &numbers[15]);
-        Sights { origin: load(0), normal: load(3), center: load(6), along: load(9), across: load(12), end }
+        ProjectedLights { origin: load(0), normal: load(3), center: load(6), along: load(9), across: load(12), end }
     }
 
     /// The samples in front of the surface, before anything hides them.
@@ -188,10 +188,10 @@ impl<S: Simd> Sights<S> {
         samples: Bits<S>,
     ) -> Bits<S> {
         let from = self.lines(triangle);
-        let offsets: [[f32; LANES]; MOST_ROWS as usize] = offsets.map(Into::into);
-        let mut samples: [[u32; LANES]; MOST_WORDS as usize] = samples.map(Into::into);
+        let offsets: [[f32; LANES]; MAX_ROWS as usize] = offsets.map(Into::into);
+        let mut samples: [[u32; LANES]; MAX_WORDS as usize] = samples.map(Into::into);
         keep_stopped(cuts, &from, (set, &offsets), lanes, &mut samples);
-        let mut bits = [u32x8::splat(simd, 0); MOST_WORDS as usize];
+        let mut bits = [u32x8::splat(simd, 0); MAX_WORDS as usize];
         for (bits, samples) in bits.iter_mut().zip(&samples) {
             *bits = u32x8::from_slice(simd, samples);
         }
@@ -288,13 +288,13 @@ impl<S: Simd> Bounds<S> {
     /// Cuts off where the function is negative, or positive in lanes that are not `outer`.
     #[inline(always)]
     fn cut(&mut self, simd: S, f: &Linear<S>, outer: mask32x8<S>) {
-        let (zero, least) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, LEAST_SLOPE));
+        let (zero, least) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, MIN_SLOPE));
         let slope = f.x.abs().simd_lt(least).select(least.copysign(f.x), f.x);
         let inverse = f32x8::splat(simd, -1.0) / slope;
         let start = f.start * inverse;
         let rises = slope.simd_gt(zero);
         let low = (rises & outer) | (!rises & !outer);
-        let beyond = f32x8::splat(simd, BEYOND);
+        let beyond = f32x8::splat(simd, UNBOUNDED);
         self.low[self.count] = low.select(start, -beyond);
         self.high[self.count] = low.select(beyond, start);
         self.step[self.count] = f.y * inverse;
@@ -304,7 +304,7 @@ impl<S: Simd> Bounds<S> {
     /// The samples within the bounds.
     #[inline(always)]
     fn bits(&self, simd: S, set: &SampleRows, offsets: &Offsets<S>) -> Bits<S> {
-        let mut bits = [u32x8::splat(simd, 0); MOST_WORDS as usize];
+        let mut bits = [u32x8::splat(simd, 0); MAX_WORDS as usize];
         let mut row = 0;
         for (word, bits) in bits.iter_mut().enumerate().take(set.words as usize) {
             while row < set.ends[word] as usize {

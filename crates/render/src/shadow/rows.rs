@@ -17,13 +17,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, Mutex};
 
 use bytemuck::Zeroable;
-use lightmesh_layout::constants::{MOST_OF_ROW, MOST_ROWS, MOST_WORDS, SHIFTS};
+use lightmesh_layout::constants::{MAX_OF_ROW, MAX_ROWS, MAX_WORDS, SHIFT_STEPS};
 use lightmesh_layout::scene::SampleRows;
 
 use crate::sync::locked;
 
-const ROWS: usize = MOST_ROWS as usize;
-const WORDS: usize = MOST_WORDS as usize;
+const ROWS: usize = MAX_ROWS as usize;
+const WORDS: usize = MAX_WORDS as usize;
 /// Bits of a word.
 const WORD: u32 = u32::BITS;
 /// The inverse of the golden ratio: its multiples are spread evenly over the unit interval.
@@ -31,7 +31,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Numbers of samples whose rows are kept: an image needs up to three, with panes up to eight, and finding them takes as long as a wave of rays in
 /// a small image.
-pub const MOST_KNOWN: usize = 8;
+pub const MAX_KNOWN: usize = 8;
 
 /// The rows that were found last for the images of one renderer: no other waits for it.
 #[derive(Debug, Default)]
@@ -69,7 +69,7 @@ impl KnownRows {
             return Arc::clone(rows);
         }
         let rows = Arc::new(Rows::new(samples));
-        known.truncate(MOST_KNOWN - 1);
+        known.truncate(MAX_KNOWN - 1);
         known.insert(0, (samples, Arc::clone(&rows)));
         rows
     }
@@ -86,7 +86,7 @@ impl Rows {
 fn lines(samples: u32) -> u32 {
     let square = (f64::from(samples).sqrt().round() as u32).max(1);
     // The rows in the middle of a disc have 4/π of the mean number.
-    square.max((1.3 * f64::from(samples) / f64::from(MOST_OF_ROW)).ceil() as u32)
+    square.max((1.3 * f64::from(samples) / f64::from(MAX_OF_ROW)).ceil() as u32)
 }
 
 fn disc(samples: u32) -> Vec<SampleRows> {
@@ -182,7 +182,7 @@ fn first_fit(rows: &[Row]) -> Vec<Vec<Row>> {
 }
 
 fn set(words: &[Vec<Row>], common: SampleRows) -> SampleRows {
-    let mut set = SampleRows { entering: MOST_ROWS, leaving: MOST_ROWS, words: words.len() as u32, ..common };
+    let mut set = SampleRows { entering: MAX_ROWS, leaving: MAX_ROWS, words: words.len() as u32, ..common };
     let mut number = 0;
     for (word, rows) in words.iter().enumerate() {
         let mut place = 0;
@@ -190,7 +190,8 @@ fn set(words: &[Vec<Row>], common: SampleRows) -> SampleRows {
             set.y[number] = row.y as f32;
             set.density[number] = (0.5 * f64::from(row.count) / row.reach) as f32;
             set.half[number] = 0.5 * row.count as f32;
-            set.shift[number] = ((f64::from(row.line) * GOLDEN).fract() * f64::from(SHIFTS)).floor() as f32 / SHIFTS;
+            set.shift[number] =
+                ((f64::from(row.line) * GOLDEN).fract() * f64::from(SHIFT_STEPS)).floor() as f32 / SHIFT_STEPS;
             set.count[number] = row.count;
             set.place[number] = place;
             set.line[number] = row.line;

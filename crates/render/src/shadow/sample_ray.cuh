@@ -8,7 +8,7 @@
 // A ray to one sample.
 struct SampleRay {
     const SurfacePoint &point;
-    const Sight &sight;
+    const Sight &projected;
     // The row of samples, the place of x = 0 in it, and the sample's bit in its word.
     float4 row;
     float offset;
@@ -22,7 +22,7 @@ DEVICE float limit(const SampleRay &) { return 1.0f; }
 // The sample, seen from the point and scaled.
 DEVICE Vec3 target_of(const SampleRay &ray) {
     const float x = ((float)(ray.bit - __float_as_uint(ray.row.w)) - ray.offset) / ray.row.y;
-    return ray.sight.center + x * ray.sight.along + ray.row.x * ray.sight.across;
+    return ray.projected.center + x * ray.projected.along + ray.row.x * ray.projected.across;
 }
 
 // Whether a triangle hides the sample: as `hide`, for a lane on its own.
@@ -35,13 +35,13 @@ DEVICE bool hides_sample(const SampleRay &ray, const Hiding &hiding) {
     RowBounds<4> bounds;
     UNROLL
     for (unsigned k = 0; k < 3; ++k) {
-        const Linear f = linear(ray.sight, side(own, triangle, k));
+        const Linear f = linear(ray.projected, side(own, triangle, k));
         if (never(f, outer))
             return false;
         cut(bounds, k, f, outer);
     }
-    Linear beyond = linear(ray.sight, plane_of(triangle));
-    beyond.start = fmaf(-own.volume, ray.sight.end, beyond.start);
+    Linear beyond = linear(ray.projected, plane_of(triangle));
+    beyond.start = fmaf(-own.volume, ray.projected.end, beyond.start);
     cut(bounds, 3, beyond, outer);
     if (!(row_bits<4>(bounds, ray.row, ray.offset) >> ray.bit & 1))
         return false;
@@ -66,9 +66,9 @@ DEVICE bool ask(SampleRay &ray, const Structure &structure, Set set) {
 
 // Casts rays to the samples in `seen`, and clears those that do not arrive. `scale` is that of the light.
 template <unsigned WORDS, class Tree>
-DEVICE void cast_to_samples(const Tree &tree, float scale, const SurfacePoint &point, const Sight &sight, const RowTable &table,
+DEVICE void cast_to_samples(const Tree &tree, float scale, const SurfacePoint &point, const Sight &projected, const RowTable &table,
                             Seen<WORDS> &seen) {
-    const Vec3 size = abs(sight.center) + abs(sight.along) + abs(sight.across);
+    const Vec3 size = abs(projected.center) + abs(projected.along) + abs(projected.across);
     const float slack = SHADOW_MARGIN * max_element(size) / scale;
     unsigned last = Hit::NONE, row = 0;
     ROLLED
@@ -78,7 +78,7 @@ DEVICE void cast_to_samples(const Tree &tree, float scale, const SurfacePoint &p
             const float4 own = table.rows[row];
             const unsigned samples = __float_as_uint(own.z) << __float_as_uint(own.w);
             for (unsigned rest = seen.bits[word] & samples; rest != 0; rest &= rest - 1) {
-                SampleRay ray = {point, sight, own, table.offsets[row * WARP], (unsigned)__ffs(rest) - 1, Hit::NONE};
+                SampleRay ray = {point, projected, own, table.offsets[row * WARP], (unsigned)__ffs(rest) - 1, Hit::NONE};
                 if (last == Hit::NONE || ask(ray, tree, Run{last, last + 1}))
                     walk_segment(tree, point.origin, target_of(ray) / scale, slack, ray);
                 if (ray.hit == Hit::NONE)

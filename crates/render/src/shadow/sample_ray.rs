@@ -1,15 +1,15 @@
 //! Rays to the samples of a light through a BVH, one after another. Whether a triangle hides a sample is decided as for a row of samples,
-//! with the bits of [`Sights::hide`](super::occlusion::Sights::hide). The twin on CUDA devices is sample_ray.cuh.
+//! with the bits of [`ProjectedLights::hide`](super::occlusion::ProjectedLights::hide). The twin on CUDA devices is sample_ray.cuh.
 
 use std::cell::Cell;
 
 use fearless_simd::Simd;
 use glam::Vec3;
-use lightmesh_layout::constants::{BEYOND, LEAST_SLOPE, SHADOW_MARGIN};
+use lightmesh_layout::constants::{MIN_SLOPE, SHADOW_MARGIN, UNBOUNDED};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_trace::accel::{Bvh, Coverage, Triangle, Visitor};
 
-use super::sight::Sight;
+use super::projected_light::ProjectedLight;
 use crate::surface::SurfacePoint;
 
 /// By how much a sample must miss a triangle's edge to need no exact test, 2^-18 of the largest product: more than both are rounded.
@@ -36,11 +36,11 @@ impl SampleRays {
         &mut self,
         simd: S,
         (bvh, scale): (&Bvh, f32),
-        (point, sight): (&SurfacePoint, &Sight),
+        (point, projected): (&SurfacePoint, &ProjectedLight),
         (set, word): (&SampleRows, usize),
         bits: u32,
     ) -> u32 {
-        let size = sight.center.abs() + sight.along.abs() + sight.across.abs();
+        let size = projected.center.abs() + projected.along.abs() + projected.across.abs();
         let slack = SHADOW_MARGIN * size.max_element() / scale;
         let mut arrive = bits;
         let first = if word == 0 { 0 } else { set.ends[word - 1] as usize };
@@ -48,7 +48,8 @@ impl SampleRays {
             let mut rest = bits & ((1 << set.count[row]) - 1) << set.place[row];
             while rest != 0 && self.most != 0 {
                 let bit = rest.trailing_zeros();
-                let mut ray = SampleRay::new(bvh.coverage(), (point, sight, size), (set, row), bit - set.place[row]);
+                let mut ray =
+                    SampleRay::new(bvh.coverage(), (point, projected, size), (set, row), bit - set.place[row]);
                 if self.last.is_none_or(|last| ray.triangle(&last)) {
                     bvh.visit_segment(simd, (point.origin, ray.target / scale), slack, &mut ray);
                 }
@@ -71,7 +72,7 @@ impl SampleRays {
 struct SampleRay<'a> {
     coverage: &'a Coverage,
     point: &'a SurfacePoint,
-    sight: &'a Sight,
+    projected: &'a ProjectedLight,
     /// The sample as seen from the point, scaled, and no less than any sample's coordinates.
     target: Vec3,
     size: Vec3,
@@ -92,18 +93,18 @@ impl<'a> SampleRay<'a> {
     #[inline(always)]
     fn new(
         coverage: &'a Coverage,
-        (point, sight, size): (&'a SurfacePoint, &'a Sight, Vec3),
+        (point, projected, size): (&'a SurfacePoint, &'a ProjectedLight, Vec3),
         (set, row): (&SampleRows, usize),
         place: u32,
     ) -> SampleRay<'a> {
-        let (y, density, offset, place) = (set.y[row], set.density[row], sight.offset(set, row), place as f32);
-        let target = sight.scaled_sample(set, row, place, offset);
+        let (y, density, offset, place) = (set.y[row], set.density[row], projected.offset(set, row), place as f32);
+        let target = projected.scaled_sample(set, row, place, offset);
         let count = set.count[row] as f32;
         let nodes = Cell::new(0);
         SampleRay {
             coverage,
             point,
-            sight,
+            projected,
             target,
             size,
             y,
@@ -147,7 +148,7 @@ impl<'a> SampleRay<'a> {
             bounds.cut(self.linear(normal), outer);
         }
         let [start, x, y] = self.linear(plane);
-        bounds.cut([(-volume).mul_add(self.sight.end, start), x, y], outer);
+        bounds.cut([(-volume).mul_add(self.projected.end, start), x, y], outer);
         let first = bounds.low.mul_add(self.density, self.offset).max(0.0).min(self.count).ceil();
         let end = bounds.high.mul_add(self.density, self.offset + 1.0).max(0.0).min(self.count).floor();
         first <= self.place && self.place < end
@@ -156,7 +157,7 @@ impl<'a> SampleRay<'a> {
     /// The function n · d on the emitter: in its middle, and how it rises along x and y.
     #[inline(always)]
     fn linear(&self, n: Vec3) -> [f32; 3] {
-        [fused_dot(n, self.sight.center), fused_dot(n, self.sight.along), fused_dot(n, self.sight.across)]
+        [fused_dot(n, self.projected.center), fused_dot(n, self.projected.along), fused_dot(n, self.projected.across)]
     }
 }
 
@@ -192,12 +193,12 @@ impl RowBounds {
     /// Cuts off where a function is negative, or positive if not `outer`.
     #[inline(always)]
     fn cut(&mut self, [start, x, y]: [f32; 3], outer: bool) {
-        let slope = if x.abs() < LEAST_SLOPE { LEAST_SLOPE.copysign(x) } else { x };
+        let slope = if x.abs() < MIN_SLOPE { MIN_SLOPE.copysign(x) } else { x };
         let inverse = -1.0 / slope;
         let (start, step) = (start * inverse, y * inverse);
         let low = (slope > 0.0) == outer;
-        self.low = self.low.max(step.mul_add(self.y, if low { start } else { -BEYOND }));
-        self.high = self.high.min(step.mul_add(self.y, if low { BEYOND } else { start }));
+        self.low = self.low.max(step.mul_add(self.y, if low { start } else { -UNBOUNDED }));
+        self.high = self.high.min(step.mul_add(self.y, if low { UNBOUNDED } else { start }));
     }
 }
 

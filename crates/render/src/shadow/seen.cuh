@@ -28,23 +28,23 @@ DEVICE unsigned number(const Seen<WORDS> &seen) {
 }
 
 // Fills in the places of x = 0 in the rows of a lane's samples.
-DEVICE void fill_row_offsets(const Sight &sight, const SampleRows &set, const RowTable &table) {
+DEVICE void fill_row_offsets(const Sight &projected, const SampleRows &set, const RowTable &table) {
     ROLLED
     for (unsigned row = 0; row < set.rows; ++row)
-        table.offsets[row * WARP] = row_offset(sight, set, row);
+        table.offsets[row * WARP] = row_offset(projected, set, row);
 }
 
 // The samples in front of a surface, before anything hides them; none unless the lane `has` a surface point.
 template <unsigned WORDS>
-DEVICE Seen<WORDS> seen_unhidden(bool has, const SurfacePoint &point, const Sight &sight, Shape shape, const SampleRows &set,
+DEVICE Seen<WORDS> seen_unhidden(bool has, const SurfacePoint &point, const Sight &projected, Shape shape, const SampleRows &set,
                                  const RowTable &table) {
     Seen<WORDS> seen = {};
     if (shape == SHAPE_POINT) {
-        seen.bits[0] = has && center_above_horizon(point, sight);
+        seen.bits[0] = has && center_above_horizon(point, projected);
         return seen;
     }
-    fill_row_offsets(sight, set, table);
-    samples_above_horizon<WORDS>(point, sight, set, table, seen.bits);
+    fill_row_offsets(projected, set, table);
+    samples_above_horizon<WORDS>(point, projected, set, table, seen.bits);
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)
         seen.bits[word] = has ? seen.bits[word] : 0;

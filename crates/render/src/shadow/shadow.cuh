@@ -4,7 +4,7 @@
 
 #include "accel/walk.cuh"
 #include "cuda/tally.cuh"
-#include "shadow/sight.cuh"
+#include "shadow/projected_light.cuh"
 
 // χ of formula (3) for a light that straddles the horizon: its share above the horizon.
 COLD float share_above_horizon(SurfacePoint point, const Light *light, float reach) {

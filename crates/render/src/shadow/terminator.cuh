@@ -2,7 +2,7 @@
 #pragma once
 
 #include "data/rays.cuh"
-#include "shadow/sight.cuh"
+#include "shadow/projected_light.cuh"
 #include "surface.cuh"
 
 // A surface point that casts shadow rays.
@@ -16,7 +16,7 @@ struct ShadowPoint {
 // Adds the way to the plane through a corner that touches the surface. False if the normal is too far from the triangle's.
 DEVICE bool add_lift(const SurfacePoint &point, float side, Vec3 corner, Vec3 vertex, float weight, Vec3 &lift, float &deepest) {
     vertex = side * vertex;
-    if (dot(vertex, point.normal) < LEAST_CURVED_COSINE)
+    if (dot(vertex, point.normal) < MIN_CURVED_COSINE)
         return false;
     const float depth = fmaxf(dot(vertex, corner - point.position), 0.0f);
     lift = lift + SHAPE_FACTOR * weight * depth * vertex;
@@ -84,7 +84,7 @@ COLD float bend_of(const Scene &scene, const Rays &rays, const Hit *hits, unsign
 DEVICE bool is_low(const Scene &scene, const Light &light, const SurfacePoint &flat, float bend) {
     float radius;
     const Vec3 way = way_to(scene, light, flat.origin, radius);
-    const float height = dot(flat.normal, way), distance = length(way), room = (GROWN - 1.0f) * distance;
+    const float height = dot(flat.normal, way), distance = length(way), room = (ENLARGEMENT - 1.0f) * distance;
     return height - radius < LOW_LIGHT * distance + room && height + radius > -bend * distance - room;
 }
 

@@ -7,7 +7,7 @@
 //! good, and the shadows of what stands on them stay in contact with it.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{LEAST_CURVED_COSINE, LOW_LIGHT, SHAPE_FACTOR};
+use lightmesh_layout::constants::{LOW_LIGHT, MIN_CURVED_COSINE, SHAPE_FACTOR};
 use lightmesh_scene::{Light, LightKind, Mesh};
 use lightmesh_trace::accel::{Hit, Triangle};
 
@@ -69,7 +69,7 @@ impl ShadowPoint {
     pub fn toward(&self, light: &Light, geometry: &PreparedGeometry) -> SurfacePoint {
         let flat = self.flat;
         let Some((lift, normal)) = self.curved else { return flat };
-        let reach = geometry.reach(flat.origin);
+        let reach = geometry.sun_distance(flat.origin);
         let way = light_center(light, flat.origin, reach) - flat.origin;
         let radius = match light.kind {
             LightKind::Point { spread, .. } => spread,
@@ -109,7 +109,7 @@ fn curved(
     let mut deepest = 0.0_f32;
     for ((corner, vertex), weight) in corners.into_iter().zip(normals).zip(weights) {
         let vertex = side * vertex;
-        if vertex.dot(point.normal) < LEAST_CURVED_COSINE {
+        if vertex.dot(point.normal) < MIN_CURVED_COSINE {
             return None;
         }
         // To the plane through the corner that touches the surface, if P is below it.

@@ -22,8 +22,9 @@ struct WeightSums {
 
 // A function of its own, so that its callers keep their registers.
 template <unsigned WORDS>
-COLD WeightSums weights_of(const Light *light, Vec3 normal, Sight sight, const SampleRows *set, RowTable table, Seen<WORDS> seen) {
-    const Vec3 sizes = max(max(abs(sight.center), abs(sight.along)), abs(sight.across));
+COLD WeightSums weights_of(const Light *light, Vec3 normal, Sight projected, const SampleRows *set, RowTable table,
+                           Seen<WORDS> seen) {
+    const Vec3 sizes = max(max(abs(projected.center), abs(projected.along)), abs(projected.across));
     const float scale = 1.0f / larger(max_element(sizes), F32_MIN_POSITIVE);
     WeightSums sums = {0.0f, 0.0f};
     unsigned row = 0;
@@ -34,10 +35,10 @@ COLD WeightSums weights_of(const Light *light, Vec3 normal, Sight sight, const S
         for (const unsigned end = table.ends[word]; row < end; ++row) {
             const float4 own = table.rows[row];
             const float offset = table.offsets[row * WARP];
-            for (unsigned rest = valid_samples(sight, *set, row); rest != 0; rest &= rest - 1) {
+            for (unsigned rest = valid_samples(projected, *set, row); rest != 0; rest &= rest - 1) {
                 const unsigned place = __ffs(rest) - 1;
                 const float x = ((float)place - offset) / own.y;
-                const Vec3 way = sight.center + x * sight.along + own.x * sight.across;
+                const Vec3 way = projected.center + x * projected.along + own.x * projected.across;
                 const float weight = weight_of(*light, normal, scale * way);
                 if (!(weight > 0.0f))
                     continue;

@@ -9,7 +9,7 @@ use glam::Vec3;
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::{Light, LightKind};
 
-use super::sight::{Emitter, Sight};
+use super::projected_light::{Emitter, ProjectedLight};
 use crate::prepared::PreparedGeometry;
 use crate::sampling::light_center;
 use crate::shading::irradiance::{may_be_near, nearness};
@@ -43,23 +43,23 @@ impl Emitter<'_> {
     /// What `point` sees of its samples by their weights, before any are looked at; `None` if they are counted from everywhere.
     #[inline(always)]
     pub(crate) fn weighed(&self, geometry: &PreparedGeometry, point: &SurfacePoint) -> Option<Weighed> {
-        let weighed = || Weighed::new(self.light().0, point, geometry.reach(point.origin));
+        let weighed = || Weighed::new(self.light().0, point, geometry.sun_distance(point.origin));
         (!self.is_point() && may_be_near(self.light().0)).then(weighed)
     }
 
     /// The weights of its samples.
     #[inline(always)]
-    pub(crate) fn weights(&self, point: &SurfacePoint, sight: &Sight) -> Weights {
-        Weights::new(self.light().0, point, sight)
+    pub(crate) fn weights(&self, point: &SurfacePoint, projected: &ProjectedLight) -> Weights {
+        Weights::new(self.light().0, point, projected)
     }
 }
 
 impl Weights {
     /// Those of a light as the point sees it.
     #[inline(always)]
-    pub(crate) fn new(light: &Light, point: &SurfacePoint, sight: &Sight) -> Weights {
+    pub(crate) fn new(light: &Light, point: &SurfacePoint, projected: &ProjectedLight) -> Weights {
         let flat = matches!(light.kind, LightKind::Disk { .. } | LightKind::Rectangle { .. });
-        let most = sight.center.abs().max(sight.along.abs()).max(sight.across.abs()).max_element();
+        let most = projected.center.abs().max(projected.along.abs()).max(projected.across.abs()).max_element();
         let even = flat && light.surface.is_none();
         Weights { normal: point.normal, front: light.surface, even, scale: 1.0 / most.max(f32::MIN_POSITIVE) }
     }
@@ -99,7 +99,7 @@ impl Weighed {
 
     /// Adds the weights of the samples of a set, of which those with their `bits` are seen.
     #[inline(never)]
-    pub(crate) fn add(&mut self, weights: &Weights, sight: &Sight, set: &SampleRows, bits: &[u32]) {
+    pub(crate) fn add(&mut self, weights: &Weights, projected: &ProjectedLight, set: &SampleRows, bits: &[u32]) {
         // Set by set, as kernels do.
         let (mut all, mut lit) = (0.0, 0.0);
         let mut word = 0;
@@ -107,12 +107,12 @@ impl Weighed {
             while row >= set.ends[word] as usize {
                 word += 1;
             }
-            let offset = sight.offset(set, row);
-            let mut rest = sight.valid(set, row);
+            let offset = projected.offset(set, row);
+            let mut rest = projected.valid(set, row);
             while rest != 0 {
                 let place = rest.trailing_zeros();
                 rest &= rest - 1;
-                let weight = weights.of(sight.scaled_sample(set, row, place as f32, offset));
+                let weight = weights.of(projected.scaled_sample(set, row, place as f32, offset));
                 if weight > 0.0 {
                     all += weight;
                     if bits[word] >> (set.place[row] + place) & 1 != 0 {

@@ -1,12 +1,12 @@
 //! Adaptive shadow rays: one per light, and all samples where those of neighbouring pixels disagree. What [occluder lists](super::lists)
 //! are compared with.
 
-use super::{Request, Taker, Visible, each_group};
-use crate::backend::run::Run;
+use super::{ShadowTechnique, VisibilityQuery, VisibilitySink, each_group};
+use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, WaveOf};
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
-use crate::plan::Footprint;
+use crate::plan::BytesPerRay;
 use crate::prepared::PreparedScene;
 use crate::settings::{Lookup, Settings};
 use crate::stage::Stage;
@@ -17,7 +17,7 @@ use crate::stats::SettingsStats;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Adaptive;
 
-impl Visible for Adaptive {
+impl ShadowTechnique for Adaptive {
     fn default_samples(settings: &Settings) -> u32 {
         settings.quality.samples()
     }
@@ -26,8 +26,8 @@ impl Visible for Adaptive {
         settings.quality.pixel_samples()
     }
 
-    fn resolve(request: &Request) -> Result<Adaptive, RenderError> {
-        request.tell_samples();
+    fn resolve(query: &VisibilityQuery) -> Result<Adaptive, RenderError> {
+        query.tell_samples();
         Ok(Adaptive)
     }
 
@@ -37,23 +37,23 @@ impl Visible for Adaptive {
 
     fn visibility<B: Backend>(
         &self,
-        run: &Run<B>,
+        runner: &StageRunner<B>,
         wave: &WaveOf<B>,
         groups: LightGroups,
-        taker: &mut Taker<B>,
+        sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
-        let n = run.backend.ray_count(wave.rays);
-        let aim = wave.aim();
-        each_group::<B>(wave, groups, taker, |wave| {
+        let n = runner.backend.ray_count(wave.rays);
+        let target = wave.shadow_target();
+        each_group::<B>(wave, groups, sink, |wave| {
             // Each surface point twice for each light: its first ray, and what follows from the answers.
             let pieces = 2 * n * wave.lights.of(groups.lights).len();
-            run.stage(Stage::AdaptiveShadows, [n, pieces], |backend| backend.adaptive_shadows(wave, &aim))
+            runner.stage(Stage::AdaptiveShadows, [n, pieces], |backend| backend.adaptive_shadows(wave, &target))
         })
     }
 
-    fn footprint(&self, lights: u64) -> Footprint {
+    fn bytes_per_ray(&self, lights: u64) -> BytesPerRay {
         // The answers, and on the host those of whole rows; on a device half of all samples to be tested, of a slice of lights.
-        Footprint { host: 2 + 4 * lights, device: 4 * lights + 5 * lights.min(LIGHTS as u64) }
+        BytesPerRay { host: 2 + 4 * lights, device: 4 * lights + 5 * lights.min(LIGHTS as u64) }
     }
 
     fn needs_neighbours(&self) -> bool {

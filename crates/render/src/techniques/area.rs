@@ -1,11 +1,11 @@
 //! Area shadows: what each surface point on its own sees of many samples of each light. The reference.
 
-use super::{Request, Taker, Visible, each_group};
-use crate::backend::run::Run;
+use super::{ShadowTechnique, VisibilityQuery, VisibilitySink, each_group};
+use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, WaveOf};
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
-use crate::plan::Footprint;
+use crate::plan::BytesPerRay;
 use crate::prepared::PreparedScene;
 use crate::settings::{Settings, ShadowTests};
 use crate::stage::Stage;
@@ -17,13 +17,13 @@ pub(crate) struct Area {
     tests: ShadowTests,
 }
 
-impl Visible for Area {
+impl ShadowTechnique for Area {
     fn default_samples(_: &Settings) -> u32 {
         225
     }
 
-    fn resolve(request: &Request) -> Result<Area, RenderError> {
-        Ok(Area { tests: request.settings.shadow_tests })
+    fn resolve(query: &VisibilityQuery) -> Result<Area, RenderError> {
+        Ok(Area { tests: query.settings.shadow_tests })
     }
 
     fn stages(&self) -> &'static [Stage] {
@@ -35,21 +35,25 @@ impl Visible for Area {
 
     fn visibility<B: Backend>(
         &self,
-        run: &Run<B>,
+        runner: &StageRunner<B>,
         wave: &WaveOf<B>,
         groups: LightGroups,
-        taker: &mut Taker<B>,
+        sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
-        let rays = run.backend.ray_count(wave.rays);
-        let aim = wave.aim();
-        each_group::<B>(wave, groups, taker, |wave| match wave.job.shadow_tests {
-            ShadowTests::Rows => run.stage(Stage::AreaShadows, [rays; 2], |backend| backend.area_shadows(wave, &aim)),
-            ShadowTests::Rays => run.stage(Stage::ShadowRays, [rays; 2], |backend| backend.shadow_rays(wave, &aim)),
+        let rays = runner.backend.ray_count(wave.rays);
+        let target = wave.shadow_target();
+        each_group::<B>(wave, groups, sink, |wave| match wave.context.shadow_tests {
+            ShadowTests::Rows => {
+                runner.stage(Stage::AreaShadows, [rays; 2], |backend| backend.area_shadows(wave, &target))
+            }
+            ShadowTests::Rays => {
+                runner.stage(Stage::ShadowRays, [rays; 2], |backend| backend.shadow_rays(wave, &target))
+            }
         })
     }
 
-    fn footprint(&self, lights: u64) -> Footprint {
-        Footprint { host: 4 * lights, device: 4 * lights }
+    fn bytes_per_ray(&self, lights: u64) -> BytesPerRay {
+        BytesPerRay { host: 4 * lights, device: 4 * lights }
     }
 
     fn spreads_points(&self) -> bool {

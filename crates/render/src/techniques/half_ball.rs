@@ -5,14 +5,14 @@
 
 use lightmesh_scene::Weight;
 
-use super::{Request, Taker, Visible};
-use crate::backend::run::Run;
+use super::{ShadowTechnique, VisibilityQuery, VisibilitySink};
+use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, SeenOf, WaveOf};
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
 use crate::gpu::memory::bytes_of_light_mesh;
 use crate::light_mesh::{Lattice, LightMesh, Template, auto_step, window_bricks};
-use crate::plan::Footprint;
+use crate::plan::BytesPerRay;
 use crate::prepared::PreparedScene;
 use crate::settings::{Lookup, Setting, Settings, Step};
 use crate::stage::Stage;
@@ -26,15 +26,15 @@ pub(crate) struct HalfBall {
     step_auto: bool,
 }
 
-impl Visible for HalfBall {
+impl ShadowTechnique for HalfBall {
     const HAS_LIGHT_POINTS: bool = true;
 
     fn default_samples(_: &Settings) -> u32 {
         4
     }
 
-    fn resolve(request: &Request) -> Result<HalfBall, RenderError> {
-        let Request { scene, settings, view, observer, bounds } = *request;
+    fn resolve(query: &VisibilityQuery) -> Result<HalfBall, RenderError> {
+        let VisibilityQuery { scene, settings, view, observer, bounds } = *query;
         let defaults = scene.scene.light_mesh;
         let radius = settings.radius.or(defaults.radius).unwrap_or(Settings::DEFAULT_RADIUS);
         let template = Template::new(radius)?;
@@ -43,7 +43,7 @@ impl Visible for HalfBall {
             Step::Fixed(step) => step,
             Step::Auto => {
                 let step = auto_step(scene, view, radius);
-                observer.chose(Setting::Step, &format!("light-mesh step h = {step} chosen for this image"));
+                observer.report_default(Setting::Step, &format!("light-mesh step h = {step} chosen for this image"));
                 step
             }
         };
@@ -59,32 +59,32 @@ impl Visible for HalfBall {
 
     fn visibility<B: Backend>(
         &self,
-        run: &Run<B>,
+        runner: &StageRunner<B>,
         wave: &WaveOf<B>,
         _: LightGroups,
-        taker: &mut Taker<B>,
+        sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
-        let (mesh, n) = (&self.mesh, run.backend.ray_count(wave.rays));
+        let (mesh, n) = (&self.mesh, runner.backend.ray_count(wave.rays));
 
         // Which surface points share a cell?
-        let cells = run.stage(Stage::Cells, [n; 2], |backend| backend.cells(wave, mesh))?;
-        let pieces = run.backend.cell_pieces(&cells);
+        let cells = runner.stage(Stage::Cells, [n; 2], |backend| backend.cells(wave, mesh))?;
+        let pieces = runner.backend.cell_pieces(&cells);
 
         // Which light points does each surface point see?                                                     (2)
-        let masks = run.stage(Stage::ShortTests, [n, pieces], |backend| backend.short_tests(wave, &cells, mesh))?;
+        let masks = runner.stage(Stage::ShortTests, [n, pieces], |backend| backend.short_tests(wave, &cells, mesh))?;
 
         // Each of them once.                                                                                  (7)
-        let collect = |backend: &B| backend.light_points(run.job, &cells, &masks, mesh);
-        let points = run.stage(Stage::Collect, [n, pieces], collect)?;
+        let collect = |backend: &B| backend.light_points(runner.context, &cells, &masks, mesh);
+        let points = runner.stage(Stage::Collect, [n, pieces], collect)?;
 
         // Which lights does each of them see?
-        let rays = run.backend.long_test_count(wave, &points);
-        let test = |backend: &B| run.with_kept(|kept| backend.long_tests(wave, &points, mesh, kept));
-        let lit = run.stage(Stage::LongTests, [n, rays], test)?;
+        let rays = runner.backend.long_test_count(wave, &points);
+        let test = |backend: &B| runner.with_cache(|cache| backend.long_tests(wave, &points, mesh, cache));
+        let lit = runner.stage(Stage::LongTests, [n, rays], test)?;
 
         // The weighted mean of what a surface point's light points see.                                       (3)
         let seen = SeenOf::<B> { mesh, cells: &cells, masks: &masks, points: &points, lit: &lit };
-        taker(run.stage(Stage::Interpolate, [n, pieces], |backend| backend.interpolate(wave, &seen))?)
+        sink(runner.stage(Stage::Interpolate, [n, pieces], |backend| backend.interpolate(wave, &seen))?)
     }
 
     /// What light points see is kept for all lights.
@@ -92,7 +92,7 @@ impl Visible for HalfBall {
         usize::MAX
     }
 
-    fn footprint(&self, lights: u64) -> Footprint {
+    fn bytes_per_ray(&self, lights: u64) -> BytesPerRay {
         let words = self.mesh.template.words();
         // Sorting by cell, members and starts; the mask; and the light points, at most a half-ball per pixel but in
         // practice fewer than two, each with its share of a brick and its visibility.
@@ -100,7 +100,7 @@ impl Visible for HalfBall {
         // Shares by cell and by ray, and light points used.
         let host = 2 * 16 + 4 + 16 + 4 * words as u64 + points + 2 * 4 * lights + 4;
         let bricks = window_bricks(self.mesh.template.reach()) as usize;
-        Footprint { host, device: bytes_of_light_mesh(words, bricks, lights) }
+        BytesPerRay { host, device: bytes_of_light_mesh(words, bricks, lights) }
     }
 
     fn template(&self) -> u64 {

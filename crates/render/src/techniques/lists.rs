@@ -4,14 +4,14 @@
 //! This is the place to start reading: `visibility` below is the whole technique. `stages/items/` groups the surface points, and
 //! `stages/occluder_lists/` finds the triangles between a group and a light and clears the samples that they hide. `docs/method/` explains why.
 
-use lightmesh_layout::constants::{MOST_STARTS, TILE};
+use lightmesh_layout::constants::{MAX_SEARCH_ROOTS, TILE};
 
-use super::{Request, Taker, Visible, each_group};
-use crate::backend::run::Run;
+use super::{ShadowTechnique, VisibilityQuery, VisibilitySink, each_group};
+use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, WaveOf};
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
-use crate::plan::Footprint;
+use crate::plan::BytesPerRay;
 use crate::prepared::PreparedScene;
 use crate::settings::{Lookup, Settings};
 use crate::stage::Stage;
@@ -21,7 +21,7 @@ use crate::stats::SettingsStats;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lists;
 
-impl Visible for Lists {
+impl ShadowTechnique for Lists {
     fn default_samples(settings: &Settings) -> u32 {
         settings.quality.samples()
     }
@@ -30,8 +30,8 @@ impl Visible for Lists {
         settings.quality.pixel_samples()
     }
 
-    fn resolve(request: &Request) -> Result<Lists, RenderError> {
-        request.tell_samples();
+    fn resolve(query: &VisibilityQuery) -> Result<Lists, RenderError> {
+        query.tell_samples();
         Ok(Lists)
     }
 
@@ -41,28 +41,28 @@ impl Visible for Lists {
 
     fn visibility<B: Backend>(
         &self,
-        run: &Run<B>,
+        runner: &StageRunner<B>,
         wave: &WaveOf<B>,
         groups: LightGroups,
-        taker: &mut Taker<B>,
+        sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
-        let n = run.backend.ray_count(wave.rays);
+        let n = runner.backend.ray_count(wave.rays);
 
         // Which surface points lie close together?
-        let items = run.stage(Stage::Items, [n; 2], |backend| backend.items(wave))?;
-        let pieces = run.backend.item_pieces(&items);
+        let items = runner.stage(Stage::Items, [n; 2], |backend| backend.items(wave))?;
+        let pieces = runner.backend.item_pieces(&items);
 
         // What stands between them and each light?
-        let aim = wave.aim();
-        each_group::<B>(wave, groups, taker, |wave| {
-            run.stage(Stage::OccluderLists, [n, pieces], |backend| backend.occluder_lists(wave, &items, &aim))
+        let target = wave.shadow_target();
+        each_group::<B>(wave, groups, sink, |wave| {
+            runner.stage(Stage::OccluderLists, [n, pieces], |backend| backend.occluder_lists(wave, &items, &target))
         })
     }
 
-    fn footprint(&self, lights: u64) -> Footprint {
+    fn bytes_per_ray(&self, lights: u64) -> BytesPerRay {
         // The ray of each surface point, by tile and in one list; its part of an item, and of where a tile's searches start.
-        let starts = (size_of::<u32>() as u64 * u64::from(MOST_STARTS + 1) * lights).div_ceil(u64::from(TILE));
-        Footprint { host: 12 + 4 * lights, device: 8 + starts + 4 * lights }
+        let starts = (size_of::<u32>() as u64 * u64::from(MAX_SEARCH_ROOTS + 1) * lights).div_ceil(u64::from(TILE));
+        BytesPerRay { host: 12 + 4 * lights, device: 8 + starts + 4 * lights }
     }
 
     fn spreads_points(&self) -> bool {

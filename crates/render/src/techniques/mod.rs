@@ -7,23 +7,23 @@ pub(crate) mod table;
 
 use lightmesh_scene::Bounds;
 
-use crate::backend::run::Run;
+use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, WaveOf};
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
-use crate::job::Sampling;
 use crate::observer::Observer;
-use crate::plan::Footprint;
+use crate::plan::BytesPerRay;
 use crate::prepared::PreparedScene;
+use crate::render_context::Sampling;
 use crate::settings::{Lookup, Mode, Setting, Settings};
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stats::SettingsStats;
 use crate::view::View;
 use table::technique_table;
 
 /// What a technique is resolved from: what the settings leave open is chosen for this image.
-pub(crate) struct Request<'a> {
+pub(crate) struct VisibilityQuery<'a> {
     pub(crate) scene: &'a PreparedScene,
     pub(crate) settings: &'a Settings,
     pub(crate) view: &'a View,
@@ -32,34 +32,36 @@ pub(crate) struct Request<'a> {
     pub(crate) bounds: Bounds,
 }
 
-impl Request<'_> {
+impl VisibilityQuery<'_> {
     /// Tells the observer how many samples of each light the quality stands for, unless their number is set or no light has a size.
     fn tell_samples(&self) {
         let Settings { quality, samples, seed, .. } = *self.settings;
         let number = quality.samples();
-        let aim = Aim::Extent(Sampling { samples: number, seed, spread: true });
-        if samples.is_none() && self.scene.scene.lights.iter().any(|light| aim.samples(light) > 1) {
-            self.observer
-                .chose(Setting::Quality, &format!("{number} samples of each light, quality {}", quality.name()));
+        let target = ShadowTarget::Area(Sampling { samples: number, seed, spread: true });
+        if samples.is_none() && self.scene.scene.lights.iter().any(|light| target.samples(light) > 1) {
+            self.observer.report_default(
+                Setting::Quality,
+                &format!("{number} samples of each light, quality {}", quality.name()),
+            );
         }
     }
 }
 
 /// Takes the visibility of a group of lights.
-pub(crate) type Taker<'a, B> = dyn FnMut(<B as Backend>::Visibility) -> Result<(), RenderError> + 'a;
+pub(crate) type VisibilitySink<'a, B> = dyn FnMut(<B as Backend>::Visibility) -> Result<(), RenderError> + 'a;
 
-/// Hands what `see` finds of each group of lights to `taker`.
+/// Hands what `see` finds of each group of lights to `sink`.
 fn each_group<B: Backend>(
     wave: &WaveOf<B>,
     groups: LightGroups,
-    taker: &mut Taker<B>,
+    sink: &mut VisibilitySink<B>,
     see: impl Fn(&WaveOf<B>) -> Result<B::Visibility, RenderError>,
 ) -> Result<(), RenderError> {
-    groups.iter().try_for_each(|lights| taker(see(&WaveOf::<B> { lights, ..*wave })?))
+    groups.iter().try_for_each(|lights| sink(see(&WaveOf::<B> { lights, ..*wave })?))
 }
 
 /// The interface of a technique.
-pub(crate) trait Visible: Sized {
+pub(crate) trait ShadowTechnique: Sized {
     /// Whether it interpolates on a lattice of light points: these can be kept from image to image, and their step and radius matter.
     const HAS_LIGHT_POINTS: bool = false;
 
@@ -72,18 +74,18 @@ pub(crate) trait Visible: Sized {
     }
 
     /// Resolves the settings that the technique needs, and tells the observer what was chosen.
-    fn resolve(request: &Request) -> Result<Self, RenderError>;
+    fn resolve(query: &VisibilityQuery) -> Result<Self, RenderError>;
 
     /// The stages between primary rays and shading, in order.
     fn stages(&self) -> &'static [Stage];
 
-    /// Hands what each surface point of a wave sees of each light to `taker`, group by group of lights.
+    /// Hands what each surface point of a wave sees of each light to `sink`, group by group of lights.
     fn visibility<B: Backend>(
         &self,
-        run: &Run<B>,
+        runner: &StageRunner<B>,
         wave: &WaveOf<B>,
         groups: LightGroups,
-        taker: &mut Taker<B>,
+        sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError>;
 
     /// Number of lights in a group. A group is shaded before the next: memory does not grow with the number of groups.
@@ -92,7 +94,7 @@ pub(crate) trait Visible: Sized {
     }
 
     /// Bytes that it needs per ray for `lights` lights at once, with their shares.
-    fn footprint(&self, lights: u64) -> Footprint;
+    fn bytes_per_ray(&self, lights: u64) -> BytesPerRay;
 
     /// Whether the visibility of a pixel depends on its neighbours.
     fn needs_neighbours(&self) -> bool {
@@ -105,7 +107,7 @@ pub(crate) trait Visible: Sized {
     }
 
     /// Whether surface points look for the centres of lights alone.
-    fn aims_at_centers(&self) -> bool {
+    fn targets_centers(&self) -> bool {
         false
     }
 
@@ -130,11 +132,11 @@ macro_rules! techniques {
 
         impl Technique {
             /// Resolves the technique selected by the settings.
-            pub(crate) fn resolve(request: &Request) -> Result<Technique, RenderError> {
-                $(if chosen(request.settings, Mode::$mode, techniques!(@lookup $lookup)) {
-                    return $file::$name::resolve(request).map(Technique::$name);
+            pub(crate) fn resolve(query: &VisibilityQuery) -> Result<Technique, RenderError> {
+                $(if chosen(query.settings, Mode::$mode, techniques!(@lookup $lookup)) {
+                    return $file::$name::resolve(query).map(Technique::$name);
                 })*
-                Err(no_technique(request.settings))
+                Err(no_technique(query.settings))
             }
 
             /// Shadow rays per area light.
@@ -164,23 +166,23 @@ macro_rules! techniques {
             techniques!(@each $($name)*;
                 stages() -> &'static [Stage];
                 lights_at_once() -> usize;
-                footprint(lights: u64) -> Footprint;
+                bytes_per_ray(lights: u64) -> BytesPerRay;
                 needs_neighbours() -> bool;
                 spreads_points() -> bool;
-                aims_at_centers() -> bool;
+                targets_centers() -> bool;
                 template() -> u64;
                 describe(scene: &PreparedScene, settings: &Settings, stats: &mut SettingsStats) -> ();
             );
 
             pub(crate) fn visibility<B: Backend>(
                 &self,
-                run: &Run<B>,
+                runner: &StageRunner<B>,
                 wave: &WaveOf<B>,
                 groups: LightGroups,
-                taker: &mut Taker<B>,
+                sink: &mut VisibilitySink<B>,
             ) -> Result<(), RenderError> {
                 match self {
-                    $(Technique::$name(technique) => technique.visibility(run, wave, groups, taker),)*
+                    $(Technique::$name(technique) => technique.visibility(runner, wave, groups, sink),)*
                 }
             }
         }

@@ -1,14 +1,14 @@
 //! Hard-shadow ray tracing: one shadow ray from each surface point to the middle of each light.
 
-use super::{Request, Taker, Visible, each_group};
-use crate::backend::run::Run;
+use super::{ShadowTechnique, VisibilityQuery, VisibilitySink, each_group};
+use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, WaveOf};
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
-use crate::plan::Footprint;
+use crate::plan::BytesPerRay;
 use crate::prepared::PreparedScene;
 use crate::settings::Settings;
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stats::SettingsStats;
 
@@ -16,12 +16,12 @@ use crate::stats::SettingsStats;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayTrace;
 
-impl Visible for RayTrace {
+impl ShadowTechnique for RayTrace {
     fn default_samples(_: &Settings) -> u32 {
         4
     }
 
-    fn resolve(_: &Request) -> Result<RayTrace, RenderError> {
+    fn resolve(_: &VisibilityQuery) -> Result<RayTrace, RenderError> {
         Ok(RayTrace)
     }
 
@@ -31,23 +31,23 @@ impl Visible for RayTrace {
 
     fn visibility<B: Backend>(
         &self,
-        run: &Run<B>,
+        runner: &StageRunner<B>,
         wave: &WaveOf<B>,
         groups: LightGroups,
-        taker: &mut Taker<B>,
+        sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
-        let rays = run.backend.ray_count(wave.rays);
-        each_group::<B>(wave, groups, taker, |wave| {
-            run.stage(Stage::ShadowRays, [rays; 2], |backend| backend.shadow_rays(wave, &Aim::Middle))
+        let rays = runner.backend.ray_count(wave.rays);
+        each_group::<B>(wave, groups, sink, |wave| {
+            runner.stage(Stage::ShadowRays, [rays; 2], |backend| backend.shadow_rays(wave, &ShadowTarget::Center))
         })
     }
 
-    fn aims_at_centers(&self) -> bool {
+    fn targets_centers(&self) -> bool {
         true
     }
 
-    fn footprint(&self, lights: u64) -> Footprint {
-        Footprint { host: 4 * lights, device: 4 * lights }
+    fn bytes_per_ray(&self, lights: u64) -> BytesPerRay {
+        BytesPerRay { host: 4 * lights, device: 4 * lights }
     }
 
     fn describe(&self, _: &PreparedScene, _: &Settings, _: &mut SettingsStats) {}

@@ -10,7 +10,7 @@
 
 use glam::Vec3;
 use lightmesh_layout::constants::{TEXEL_BITS, TEXEL_ONE};
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 use lightmesh_scene::{Geometry, OpacityChannel, Texture, TextureUse};
 use rayon::prelude::*;
 
@@ -53,7 +53,7 @@ impl AllLevels {
     ///
     /// # Errors
     /// The number of the texture whose levels do not fit into the budget.
-    pub fn of(geometry: &Geometry, budget: Budget) -> Result<AllLevels, (usize, Short)> {
+    pub fn of(geometry: &Geometry, budget: Budget) -> Result<AllLevels, (usize, OverBudget)> {
         let mut all = AllLevels::default();
         let images = geometry.materials.iter().flat_map(|material| images_of(geometry, material));
         for Image { uses, texture, encoding } in images.flatten() {

@@ -102,7 +102,7 @@ DEVICE Vec3 filtered(const float *codes, const Texture &texture, Uv place, const
         return at_level(codes, &texture, place, texture.level_count);
 
     // 3. Probes along the major axis.
-    const float most = (float)MOST_PROBES;
+    const float most = (float)MAX_PROBES;
     const float minor = fmaxf(sqrtf(fmaxf(middle - apart, 0.0f)), fmaxf(major / most, 1.0f));
     const float count = fminf(ceilf(major / minor), most);
     const Uv along = aside > 0.0f ? Uv{aside + apart, uv} : Uv{uv, apart - aside};

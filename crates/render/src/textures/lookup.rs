@@ -11,7 +11,7 @@
 //!    round differently.
 
 use glam::{Vec2, Vec3};
-use lightmesh_layout::constants::{F32_EXPONENT_BIAS, F32_EXPONENT_STEP, MOST_PROBES};
+use lightmesh_layout::constants::{F32_EXPONENT_BIAS, F32_EXPONENT_STEP, MAX_PROBES};
 use lightmesh_scene::Wrap;
 use lightmesh_trace::textures::neighbours;
 
@@ -42,9 +42,9 @@ pub fn filtered(image: &Image, levels: &MipLevels, place: Vec2, axes: [Vec2; 2])
     }
 
     // 3. Probes along the major axis.
-    let narrowest = (major / MOST_PROBES as f32).max(1.0);
+    let narrowest = (major / MAX_PROBES as f32).max(1.0);
     let minor = (middle - apart).max(0.0).sqrt().max(narrowest);
-    let count = (major / minor).ceil().min(MOST_PROBES as f32);
+    let count = (major / minor).ceil().min(MAX_PROBES as f32);
     let along = if aside > 0.0 { Vec2::new(aside + apart, xy) } else { Vec2::new(xy, apart - aside) };
     let length = along.length();
     let axis = if length > 0.0 { (major / length) * along / size } else { Vec2::ZERO };

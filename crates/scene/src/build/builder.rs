@@ -14,7 +14,7 @@ use super::{
     sanitize::{clamp_reflectance, keep_finite, unseen},
     vertices::{Vertices, reserve},
 };
-use crate::model::instances::MOST_INSTANCED;
+use crate::model::instances::MAX_INSTANCED;
 use crate::model::transforms::{mirrors, normal_placement};
 use crate::{Affine, Geometry, Instances, Material, Mesh, Objects, Position, Scene, UNNAMED};
 
@@ -123,7 +123,7 @@ impl SceneBuilder {
 
     /// Places a shape, as the object `object`. Returns whether it can be placed so; else nothing has changed.
     pub(crate) fn place(&mut self, triangles: Range<usize>, transform: &DMat4, object: Option<&str>) -> bool {
-        if !Affine::holds(transform) || self.shapes.triangles + triangles.len() >= MOST_INSTANCED {
+        if !Affine::holds(transform) || self.shapes.triangles + triangles.len() >= MAX_INSTANCED {
             return false;
         }
         self.shapes.triangles += triangles.len();
@@ -179,7 +179,7 @@ impl SceneBuilder {
         let count = part.triangles.len();
         let all = self.shapes.triangles + count.saturating_mul(places.len());
         check_room(self.vertex_count() + part.positions.len(), self.triangle_count() + 2 * count)?;
-        if all >= MOST_INSTANCED {
+        if all >= MAX_INSTANCED {
             return Err(GeometryError::TooLarge { vertices: self.vertex_count(), triangles: all });
         }
         // The shape, and behind it the same with its corners in reverse order for places that mirror.

@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::Path, path::PathBuf};
 
-use lightmesh_memory::Short;
+use lightmesh_memory::OverBudget;
 
 use crate::build::quote::{self, list, quote, reference};
 
@@ -221,7 +221,7 @@ pub enum LoadError {
         /// What would be held: the file itself, a texture, vertices and triangles counting every use of a mesh.
         what: String,
         /// Bytes needed and left.
-        short: Short,
+        short: OverBudget,
     },
     /// Not enough memory for smooth normals.
     #[error(
@@ -234,7 +234,7 @@ pub enum LoadError {
         /// Triangles of the mesh.
         triangles: usize,
         /// Bytes needed and left.
-        short: Short,
+        short: OverBudget,
     },
     /// More vertices or triangles than 32-bit indices can address.
     #[error("the scene has more than {} vertices or triangles, {}; split or simplify it", u32::MAX, path.display())]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{DMat4, Vec2, Vec3};
 
 use super::geometry_check::{check_instances, check_room};
-use crate::model::instances::{Affine, MOST_INSTANCED};
+use crate::model::instances::{Affine, MAX_INSTANCED};
 use crate::{FIRST_INSTANCED, GeometryError, Mesh, UNNAMED};
 
 impl Mesh {
@@ -29,7 +29,7 @@ impl Mesh {
         let (count, shapes) = (flat.triangles.len(), if places.iter().any(mirrors) { 2 } else { 1 });
         let (vertices, all) = (self.positions.len() + flat.positions.len(), self.triangles.len() + shapes * count);
         check_room(vertices, all.max(self.instances.triangle_count() + count.saturating_mul(places.len())))?;
-        if all > FIRST_INSTANCED as usize || self.instances.triangle_count() + count * places.len() >= MOST_INSTANCED {
+        if all > FIRST_INSTANCED as usize || self.instances.triangle_count() + count * places.len() >= MAX_INSTANCED {
             return Err(GeometryError::TooLarge { vertices, triangles: self.triangle_count() + count * places.len() });
         }
         // 1. The shape, and behind it the same with its corners in reverse order, if it is mirrored anywhere.

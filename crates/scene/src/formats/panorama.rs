@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, guess_format};
 use lightmesh_files::{Portion, ReadError, read};
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 
 use crate::build::textures::decode::checked_texels;
 use crate::{Environment, Up};
@@ -54,7 +54,7 @@ pub enum EnvironmentError {
         /// What would be held: the file itself, or its texels.
         what: String,
         /// How much memory is missing.
-        short: Short,
+        short: OverBudget,
     },
 }
 

@@ -17,7 +17,7 @@ use crate::parse_by_name;
 pub const FIRST_INSTANCED: u32 = 1 << 31;
 
 /// Numbers of triangles of instances, of which the last means none.
-pub(crate) const MOST_INSTANCED: usize = (u32::MAX - FIRST_INSTANCED) as usize;
+pub(crate) const MAX_INSTANCED: usize = (u32::MAX - FIRST_INSTANCED) as usize;
 
 /// Instances of which a shape is at most this much larger or smaller than its coordinates say: beyond, rounding would show.
 const SCALES: Range<f64> = 1e-6..1e6;

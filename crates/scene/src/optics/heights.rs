@@ -12,11 +12,11 @@ const HEIGHT: f32 = 0.01;
 const ZERO: f32 = 128.0;
 const ONE: f32 = 127.0;
 /// Grey images may have this difference between channels, in most of their texels: JPEG rounds them.
-const MOST_APART: u8 = 12;
+const MAX_APART: u8 = 12;
 
 /// Whether an image has no colours, so that it may be one of heights: normals are blue.
 pub fn is_grey(texture: &Texture) -> bool {
-    let grey = |&&[r, g, b, _]: &&[u8; 4]| r.max(g).max(b) - r.min(g).min(b) <= MOST_APART;
+    let grey = |&&[r, g, b, _]: &&[u8; 4]| r.max(g).max(b) - r.min(g).min(b) <= MAX_APART;
     2 * texture.texels.iter().filter(grey).count() >= texture.texels.len()
 }
 

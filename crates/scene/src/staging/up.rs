@@ -17,7 +17,7 @@ pub struct UpInfo {
 /// Maximum thickness of a ground, as a share of the scene's height.
 const GROUND: f32 = 1e-3;
 /// Minimum share of the box's base that a ground covers.
-const LEAST_GROUND: f32 = 0.01;
+const MIN_GROUND: f32 = 0.01;
 /// How much larger it must be than the flat bottom along the other axis.
 const CLEARLY: f32 = 2.0;
 /// How closely a model that stands at height 0 begins there, and is centred on the other axis, as a share of its size there.
@@ -33,7 +33,7 @@ impl Scene {
             return by(if upper.y > upper.z { Up::Y } else { Up::Z }, "its cameras are oriented that way");
         }
         let [y, z] = [Up::Y, Up::Z].map(|up| self.ground(up));
-        match (y.max(z) >= LEAST_GROUND, y > CLEARLY * z, z > CLEARLY * y) {
+        match (y.max(z) >= MIN_GROUND, y > CLEARLY * z, z > CLEARLY * y) {
             (true, true, _) => by(Up::Y, "it has a flat ground at its lowest y"),
             (true, _, true) => by(Up::Z, "it has a flat ground at its lowest z"),
             _ => match [Up::Y, Up::Z].map(|up| self.starts_at_zero(up)) {

@@ -16,10 +16,10 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x8};
 use lightmesh_scene::Bounds;
 
-use super::approach::Approach;
 use super::packet::{ClosestPacket, LANES, PacketShear, PacketVisitor};
+use super::ray_clamp::RayClamp;
 use super::triangle::largest_axis;
-use super::{Accelerator, Coverage, Form, Hit, Ray, Region, Triangles};
+use super::{Accelerator, AcceleratorKind, Coverage, Hit, Ray, Region, Triangles};
 use crate::simd::dispatch;
 
 /// Triangles of a beam; with more, packets take less time.
@@ -34,7 +34,7 @@ pub struct Beams<'a> {
     accelerator: &'a dyn Accelerator,
     triangles: &'a Triangles,
     coverage: &'a Coverage,
-    approach: Approach,
+    ray_clamp: RayClamp,
     level: Level,
     found: Vec<u32>,
     left: Vec<(usize, Ray)>,
@@ -48,8 +48,8 @@ impl<'a> Beams<'a> {
         coverage: &'a Coverage,
         bounds: &Bounds,
     ) -> Beams<'a> {
-        let (level, approach) = (Level::new(), Approach::new(bounds));
-        Beams { accelerator, triangles, coverage, approach, level, found: Vec::new(), left: Vec::new() }
+        let (level, ray_clamp) = (Level::new(), RayClamp::new(bounds));
+        Beams { accelerator, triangles, coverage, ray_clamp, level, found: Vec::new(), left: Vec::new() }
     }
 
     /// The closest hits of `rays`, whose directions have unit length, cut into beams of `size` rays. `far` says how far those of a beam
@@ -78,12 +78,12 @@ impl<'a> Beams<'a> {
 
     /// Finds the triangles that rays may hit up to `far`; `false` if there are too many, or too little is known.
     fn search(&mut self, rays: &[Ray], far: Option<f32>) -> bool {
-        let near = |ray: &Ray| self.approach.is_near(ray) && ray.t_max == f32::INFINITY;
-        if !matches!(self.accelerator.form(), Form::Bvh(_)) || !rays.iter().all(near) {
+        let near = |ray: &Ray| self.ray_clamp.is_near(ray) && ray.t_max == f32::INFINITY;
+        if !matches!(self.accelerator.kind(), AcceleratorKind::Bvh(_)) || !rays.iter().all(near) {
             return false;
         }
         let origins = Bounds::around(rays.iter().map(|ray| ray.origin));
-        let (center, radius) = self.approach.parts();
+        let (center, radius) = self.ray_clamp.parts();
         let aside = (origins.min - center).abs().max((origins.max - center).abs());
         let reach = aside.max_element() + radius;
         // A triangle is no farther than the sum of these, and twice that leaves room for rounding.
@@ -96,8 +96,8 @@ impl<'a> Beams<'a> {
         self.found.clear();
         let found = &mut self.found;
         let mut fits = true;
-        self.accelerator.search(&Region::shaft(grown(origins), grown(ends)), &mut |piece| {
-            found.extend_from_slice(piece);
+        self.accelerator.search(&Region::shaft(grown(origins), grown(ends)), &mut |chunk| {
+            found.extend_from_slice(chunk);
             fits = found.len() <= MOST;
             fits
         });

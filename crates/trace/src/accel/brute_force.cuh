@@ -1,7 +1,7 @@
 // Tests every triangle: twin of brute_force.rs.
 #pragma once
 
-#include "accel/sieve.cuh"
+#include "accel/region_filter.cuh"
 #include "accel/visit.cuh"
 
 template <class Visitor>
@@ -20,26 +20,27 @@ struct ListSearch {
 
 DEVICE unsigned search_words(const BruteForce &) { return 0; }
 
-template <class Form>
-DEVICE ListSearch begin_search(const BruteForce &, const Region<Form> &, unsigned *) { return ListSearch{0}; }
+template <class RegionShape>
+DEVICE ListSearch begin_search(const BruteForce &, const Region<RegionShape> &, unsigned *) { return ListSearch{0}; }
 
-template <class Form>
-DEVICE unsigned find_starts(const BruteForce &, const Region<Form> &, unsigned *) { return FROM_ROOT; }
+template <class RegionShape>
+DEVICE unsigned find_starts(const BruteForce &, const Region<RegionShape> &, unsigned *) { return FROM_ROOT; }
 
-template <class Form>
-DEVICE ListSearch begin_search_at(const BruteForce &all, const Region<Form> &region, unsigned *memory, const unsigned *, unsigned) {
+template <class RegionShape>
+DEVICE ListSearch begin_search_at(const BruteForce &all, const Region<RegionShape> &region, unsigned *memory, const unsigned *,
+                                  unsigned) {
     return begin_search(all, region, memory);
 }
 
 DEVICE bool goes_on(const BruteForce &all, const ListSearch &search) { return search.next < all.count; }
 
 // One round: each lane takes three triangles.
-template <bool SIEVED, class Form>
-DEVICE void next_triangles(const BruteForce &all, const Region<Form> &region, ListSearch &search, unsigned *found,
+template <bool FILTERED, class RegionShape>
+DEVICE void next_triangles(const BruteForce &all, const Region<RegionShape> &region, ListSearch &search, unsigned *found,
                            unsigned &count) {
     for (unsigned i = 0; i < 3 && search.next < all.count; i++) {
         const unsigned place = search.next + lane_of_thread();
-        sieve<SIEVED>(region, all.triangles + place, place < all.count, place, found, count);
+        filter_by_region<FILTERED>(region, all.triangles + place, place < all.count, place, found, count);
         search.next += WARP;
     }
     __syncwarp();

@@ -6,27 +6,27 @@ use fearless_simd::Level;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
-use super::approach::{Approach, NearRay};
-use super::distinct::distinct;
-use super::sieve::{Sieve, Take};
+use super::deduplicate::deduplicate;
+use super::ray_clamp::{ClampedRay, RayClamp};
+use super::region_filter::{ChunkSink, RegionFilter};
 use super::triangle::RayShear;
 use super::visit::{All, Visitor};
-use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Triangle};
+use super::{Accelerator, AcceleratorKind, Coverage, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
 
 /// A list of triangles, all of which are tested.
 #[derive(Clone, Debug)]
 pub struct BruteForce {
     triangles: Arc<[Triangle]>,
-    approach: Approach,
+    ray_clamp: RayClamp,
     coverage: Coverage,
 }
 
 impl BruteForce {
     /// Keeps the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> BruteForce {
-        let triangles: Arc<[_]> = distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect();
-        BruteForce { approach: Approach::around(&triangles), triangles, coverage: Coverage::default() }
+        let triangles: Arc<[_]> = deduplicate(triangles).into_iter().map(|at| triangles[at as usize]).collect();
+        BruteForce { ray_clamp: RayClamp::around(&triangles), triangles, coverage: Coverage::default() }
     }
 
     /// The opacities of triangles that are cut out.
@@ -41,11 +41,11 @@ impl BruteForce {
     }
 
     /// Centre and radius of the sphere of interest.
-    pub fn approach(&self) -> (glam::Vec3, f32) {
-        self.approach.parts()
+    pub fn ray_clamp(&self) -> (glam::Vec3, f32) {
+        self.ray_clamp.parts()
     }
 
-    fn closest(&self, ray: &NearRay) -> Hit {
+    fn closest(&self, ray: &ClampedRay) -> Hit {
         let shear = RayShear::new(ray.origin, ray.direction);
         self.triangles.iter().fold(Hit::MISS, |best, triangle| match shear.hit(triangle, ray.t_max) {
             Some(hit) if hit.beats(&best) && self.coverage.has(triangle, &hit) => hit,
@@ -53,7 +53,7 @@ impl BruteForce {
         })
     }
 
-    fn any(&self, ray: &NearRay) -> bool {
+    fn any(&self, ray: &ClampedRay) -> bool {
         let shear = RayShear::new(ray.origin, ray.direction);
         let covers =
             |triangle: &Triangle| shear.hit(triangle, ray.t_max).is_some_and(|hit| self.coverage.has(triangle, &hit));
@@ -64,14 +64,14 @@ impl BruteForce {
 impl Accelerator for BruteForce {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
         for (hit, ray) in hits.iter_mut().zip(rays) {
-            *hit = self.approach.ray(ray).map_or(Hit::MISS, |near| near.finish(self.closest(&near)));
+            *hit = self.ray_clamp.ray(ray).map_or(Hit::MISS, |near| near.finish(self.closest(&near)));
         }
     }
 
     fn all_hits(&self, rays: &[Ray], take: &mut dyn FnMut(usize, &[Hit])) {
         let mut hits = Vec::new();
         for (number, ray) in rays.iter().enumerate() {
-            let Some(near) = self.approach.ray(ray) else { continue };
+            let Some(near) = self.ray_clamp.ray(ray) else { continue };
             let mut all = All::new(&near, &self.coverage, &mut hits);
             self.triangles.iter().for_each(|triangle| {
                 all.triangle(triangle);
@@ -82,7 +82,7 @@ impl Accelerator for BruteForce {
 
     fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
         for (occluded, segment) in occluded.iter_mut().zip(segments) {
-            *occluded = self.approach.ray(segment).is_some_and(|near| self.any(&near));
+            *occluded = self.ray_clamp.ray(segment).is_some_and(|near| self.any(&near));
         }
     }
 
@@ -90,7 +90,7 @@ impl Accelerator for BruteForce {
         segments.ask(self.triangles.iter(), blocked);
     }
 
-    fn search(&self, region: &Region, take: Take) {
+    fn search(&self, region: &Region, take: ChunkSink) {
         dispatch!(Level::new(), simd => search(simd, &self.triangles, region, take));
     }
 
@@ -102,8 +102,8 @@ impl Accelerator for BruteForce {
         "brute-force"
     }
 
-    fn form(&self) -> Form<'_> {
-        Form::BruteForce(self)
+    fn kind(&self) -> AcceleratorKind<'_> {
+        AcceleratorKind::BruteForce(self)
     }
 
     fn memory(&self) -> usize {
@@ -112,12 +112,12 @@ impl Accelerator for BruteForce {
 }
 
 #[simd]
-fn search<S: Simd>(simd: S, triangles: &[Triangle], region: &Region, take: Take) {
-    let mut sieve = Sieve::new(simd, region, take);
+fn search<S: Simd>(simd: S, triangles: &[Triangle], region: &Region, take: ChunkSink) {
+    let mut filter = RegionFilter::new(simd, region, take);
     for triangle in triangles {
-        if !sieve.take(triangle) {
+        if !filter.take(triangle) {
             return;
         }
     }
-    sieve.finish();
+    filter.finish();
 }

@@ -14,20 +14,20 @@
 //! * Where a triangle is cut out (`coverage`) there is nothing to hit.
 //! * Of opaque triangles with identical corners only the one with the smallest index is held: neither hits nor shadows need the others.
 //!
-//! The structures are built here; devices hold copies ([`Form`]) and walk them with the code in the `.cuh` files next to the Rust
+//! The structures are built here; devices hold copies ([`AcceleratorKind`]) and walk them with the code in the `.cuh` files next to the Rust
 //! ones, with the same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
 
-mod approach;
 pub(crate) mod beam;
 mod brute_force;
 pub(crate) mod bvh;
 pub mod coverage;
-pub(crate) mod distinct;
+pub(crate) mod deduplicate;
 pub(crate) mod grid;
 mod instanced;
 mod packet;
+mod ray_clamp;
 mod region;
-mod sieve;
+mod region_filter;
 pub mod triangle;
 mod visit;
 
@@ -43,7 +43,7 @@ pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveE
 pub use instanced::Triangles;
 pub use instanced::{Instanced, ShapeTree};
 pub use region::{Region, TangentPlanes};
-pub use sieve::{PIECE, Take};
+pub use region_filter::{CHUNK, ChunkSink};
 pub use triangle::{ShortTest, Triangle};
 pub use visit::Visitor;
 
@@ -128,7 +128,7 @@ impl ShortSegments<'_> {
 
 /// The kinds of structures.
 #[derive(Clone, Copy, Debug)]
-pub enum Form<'a> {
+pub enum AcceleratorKind<'a> {
     /// A wide BVH.
     Bvh(&'a Bvh),
     /// A regular grid.
@@ -152,17 +152,17 @@ pub trait Accelerator: Send + Sync {
     /// is overwritten.
     fn short_segments(&self, segments: &ShortSegments, blocked: &mut [bool]);
 
-    /// Hands all triangles held that meet `region` to `take`, up to [`PIECE`] at once, in no order and perhaps twice,
+    /// Hands all triangles held that meet `region` to `take`, up to [`CHUNK`] at once, in no order and perhaps twice,
     /// until it returns false. May find others as well, but only those whose bounding box the region
     /// [may meet](Region). A list and a BVH find all of those; a grid need not find a triangle that stays away from the
     /// region's cells although its bounding box does not.
-    fn search(&self, region: &Region, take: Take);
+    fn search(&self, region: &Region, take: ChunkSink);
 
     /// Replaces the content of `found` with what a [search](Accelerator::search) finds, each once, in ascending order of index.
     fn triangles_in(&self, region: &Region, found: &mut Vec<u32>) {
         found.clear();
-        self.search(region, &mut |piece| {
-            found.extend_from_slice(piece);
+        self.search(region, &mut |chunk| {
+            found.extend_from_slice(chunk);
             true
         });
         found.sort_unstable();
@@ -178,6 +178,6 @@ pub trait Accelerator: Send + Sync {
     /// Its size in memory, bytes.
     fn memory(&self) -> usize;
 
-    /// Its form, for devices that hold a copy.
-    fn form(&self) -> Form<'_>;
+    /// Its kind, for devices that hold a copy.
+    fn kind(&self) -> AcceleratorKind<'_>;
 }

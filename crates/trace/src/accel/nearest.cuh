@@ -4,7 +4,7 @@
 #include "accel/walk.cuh"
 
 struct NearestHits {
-    NearRay near;
+    ClampedRay near;
     RayShear ray;
     // What is not behind this parameter of the ray asked for does not count.
     float behind;
@@ -54,7 +54,7 @@ DEVICE bool ask(NearestHits &hits, const Structure &structure, Set set) {
 // Finds the nearest hits of a ray behind a parameter. There may be more if HITS_AT_ONCE are found.
 template <class Structure>
 DEVICE void find_nearest(const Structure &structure, const Tally &tally, const Ray &ray, float behind, NearestHits &hits) {
-    hits.near = near_ray(structure.approach, ray);
+    hits.near = clamped_ray(structure.ray_clamp, ray);
     hits.behind = behind;
     hits.count = 0;
     if (hits.near.scale == 0.0)

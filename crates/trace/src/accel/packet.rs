@@ -4,7 +4,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, f64x4, mask32x8, u32x8};
 
-use super::approach::NearRay;
+use super::ray_clamp::ClampedRay;
 use super::visit::{Any, Closest};
 use super::{Coverage, Hit, Triangle};
 
@@ -132,7 +132,7 @@ pub(super) trait PacketVisitor<S: Simd> {
     fn done(&self) -> u32;
 
     /// Continues the ray of one lane alone, and adopts its result.
-    fn alone(&mut self, simd: S, lane: usize, near: &NearRay, walk: impl FnOnce(&mut Self::Single));
+    fn alone(&mut self, simd: S, lane: usize, near: &ClampedRay, walk: impl FnOnce(&mut Self::Single));
 }
 
 /// Searches for the closest hits.
@@ -207,7 +207,7 @@ impl<'a, S: Simd> PacketVisitor<S> for ClosestPacket<'a, S> {
     }
 
     #[inline(always)]
-    fn alone(&mut self, simd: S, lane: usize, near: &NearRay, walk: impl FnOnce(&mut Closest<'a>)) {
+    fn alone(&mut self, simd: S, lane: usize, near: &ClampedRay, walk: impl FnOnce(&mut Closest<'a>)) {
         let before = self.hits()[lane];
         let mut single = Closest::from(near, self.coverage, before);
         walk(&mut single);
@@ -276,7 +276,7 @@ impl<'a, S: Simd> PacketVisitor<S> for AnyPacket<'a, S> {
     }
 
     #[inline(always)]
-    fn alone(&mut self, simd: S, lane: usize, near: &NearRay, walk: impl FnOnce(&mut Any<'a>)) {
+    fn alone(&mut self, simd: S, lane: usize, near: &ClampedRay, walk: impl FnOnce(&mut Any<'a>)) {
         let mut single = Any::new(near, self.coverage);
         walk(&mut single);
         if single.hit {

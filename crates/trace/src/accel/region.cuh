@@ -1,6 +1,6 @@
 // Regions of space that are searched for triangles, and which boxes they may meet: twin of region/, where rounding is explained.
 //
-// The region is the same for the whole warp; each lane has its own box. The form is a type, so that a search does not hold the
+// The region is the same for the whole warp; each lane has its own box. The shape is a type, so that a search does not hold the
 // numbers of other forms. The steps are those of the twin, in the same order: both meet the same boxes.
 #pragma once
 
@@ -70,25 +70,25 @@ DEVICE bool reached(const TangentPlanes &planes, const Vec3 &low, const Vec3 &hi
 // ---- Forms ----
 
 // A closed box: the bounds themselves.
-struct BoxForm {
+struct BoxShape {
     enum { SLANTED = false };
     Bounds bounds;
 };
 
-DEVICE bool form_meets(const BoxForm &box, const Vec3 &low, const Vec3 &high) {
+DEVICE bool shape_meets(const BoxShape &box, const Vec3 &low, const Vec3 &high) {
     const Vec3 &min = box.bounds.low, &max = box.bounds.high;
     return low.x <= max.x && high.x >= min.x && low.y <= max.y && high.y >= min.y && low.z <= max.z && high.z >= min.z;
 }
 
 // All points near a box.
-struct NearForm {
+struct NearShape {
     enum { SLANTED = false };
     Bounds origins;
     // A little more than the square of the distance.
     float square;
 };
 
-DEVICE bool form_meets(const NearForm &near, const Vec3 &low, const Vec3 &high) {
+DEVICE bool shape_meets(const NearShape &near, const Vec3 &low, const Vec3 &high) {
     const Vec3 apart = max(max(low - near.origins.high, near.origins.low - high), splat(0.0f));
     return dot(apart, apart) <= near.square;
 }
@@ -116,7 +116,7 @@ struct ShaftFaces {
 static_assert(sizeof(ShaftFaces) <= 4 * SHAFT_WORDS, "words of the faces of a shaft");
 
 // The space between two boxes: twin of region/shaft.rs.
-struct ShaftForm {
+struct ShaftShape {
     enum { SLANTED = true };
     const ShaftFaces *faces;
 };
@@ -136,7 +136,7 @@ DEVICE void narrow_shaft(float low_from, float low_inverse, float high_from, flo
         last = fminf(last, below);
 }
 
-DEVICE bool form_meets(const ShaftForm &shaft, const Vec3 &low, const Vec3 &high) {
+DEVICE bool shape_meets(const ShaftShape &shaft, const Vec3 &low, const Vec3 &high) {
     const Faces &lower = shaft.faces->low, &upper = shaft.faces->high;
     float first = 0.0f, last = 1.0f;
     narrow_shaft(lower.from.x, lower.inverse.x, upper.from.x, upper.inverse.x, low.x, high.x, first, last);
@@ -146,9 +146,9 @@ DEVICE bool form_meets(const ShaftForm &shaft, const Vec3 &low, const Vec3 &high
 }
 
 // The way from the middle of a shaft's first box to that of its second; zero for other forms.
-DEVICE Vec3 heading_of(const BoxForm &) { return splat(0.0f); }
-DEVICE Vec3 heading_of(const NearForm &) { return splat(0.0f); }
-DEVICE Vec3 heading_of(const ShaftForm &shaft) {
+DEVICE Vec3 heading_of(const BoxShape &) { return splat(0.0f); }
+DEVICE Vec3 heading_of(const NearShape &) { return splat(0.0f); }
+DEVICE Vec3 heading_of(const ShaftShape &shaft) {
     const Faces &low = shaft.faces->low, &high = shaft.faces->high;
     return 0.5f * (low.to - low.from + high.to - high.from);
 }
@@ -160,9 +160,9 @@ DEVICE unsigned octant_of(const Vec3 &direction) {
 
 // ---- Regions ----
 
-template <class Form>
+template <class RegionShape>
 struct Region {
-    Form form;
+    RegionShape shape;
     TangentPlanes planes;
     // No point of the region lies outside.
     Bounds bounds;
@@ -180,17 +180,17 @@ DEVICE Vec3 next_up(const Vec3 &a) { return Vec3{next_up(a.x), next_up(a.y), nex
 DEVICE TangentPlanes no_planes() { return TangentPlanes{0, splat(0.0f), nullptr}; }
 
 // A closed box.
-DEVICE Region<BoxForm> region_within(const Bounds &bounds) { return Region<BoxForm>{BoxForm{bounds}, no_planes(), bounds}; }
+DEVICE Region<BoxShape> region_within(const Bounds &bounds) { return Region<BoxShape>{BoxShape{bounds}, no_planes(), bounds}; }
 
 // All points at most `reach` away from some point of `origins`.
-DEVICE Region<NearForm> region_near(const Bounds &origins, float reach) {
+DEVICE Region<NearShape> region_near(const Bounds &origins, float reach) {
     const float square = reach * reach * (1.0f + REGION_ROUNDING) + F32_MIN_POSITIVE;
     const Bounds bounds = {next_down(origins.low - splat(reach)), next_up(origins.high + splat(reach))};
-    return Region<NearForm>{NearForm{origins, square}, no_planes(), bounds};
+    return Region<NearShape>{NearShape{origins, square}, no_planes(), bounds};
 }
 
 // All points of all segments from a point of `origins` to a point of `emitter`; neither is empty. Each of six lanes computes a face.
-DEVICE Region<ShaftForm> region_shaft(const Bounds &origins, const Bounds &emitter, ShaftFaces *memory) {
+DEVICE Region<ShaftShape> region_shaft(const Bounds &origins, const Bounds &emitter, ShaftFaces *memory) {
     const unsigned lane = lane_of_thread(), axis = lane % 3;
     if (lane < 6) {
         const bool upper = lane >= 3;
@@ -201,12 +201,13 @@ DEVICE Region<ShaftForm> region_shaft(const Bounds &origins, const Bounds &emitt
         face[6] = inverse_way(from, to, upper ? 1.0f : -1.0f);
     }
     __syncwarp();
-    return Region<ShaftForm>{ShaftForm{memory}, no_planes(), Bounds{min(origins.low, emitter.low), max(origins.high, emitter.high)}};
+    return Region<ShaftShape>{ShaftShape{memory}, no_planes(),
+                              Bounds{min(origins.low, emitter.low), max(origins.high, emitter.high)}};
 }
 
 // The part of a region that does not lie below all the planes lowered by `slack`; everything if there are none.
-template <class Form>
-DEVICE Region<Form> region_above(Region<Form> region, const TangentPlanes &planes, float slack) {
+template <class RegionShape>
+DEVICE Region<RegionShape> region_above(Region<RegionShape> region, const TangentPlanes &planes, float slack) {
     const unsigned lane = lane_of_thread();
     if (lane < planes.count) {
         const float4 plane = planes.memory->planes[lane];
@@ -220,14 +221,14 @@ DEVICE Region<Form> region_above(Region<Form> region, const TangentPlanes &plane
 
 // Whether the region may meet the lane's box. `loose` is added to the height that the box reaches above a plane: 16 ε times the sum
 // of its edges; zero for a box that was enlarged by as much on each side.
-template <class Form>
-DEVICE bool meets(const Region<Form> &region, const Vec3 &low, const Vec3 &high, float loose) {
-    return form_meets(region.form, low, high) && (region.planes.count == 0 || reached(region.planes, low, high, loose));
+template <class RegionShape>
+DEVICE bool meets(const Region<RegionShape> &region, const Vec3 &low, const Vec3 &high, float loose) {
+    return shape_meets(region.shape, low, high) && (region.planes.count == 0 || reached(region.planes, low, high, loose));
 }
 
 // A box around all points of a shaft whose coordinate on `axis` lies between `low` and `high`; false if there are none.
-DEVICE bool region_between(const Region<ShaftForm> &region, unsigned axis, float low, float high, Bounds &bounds) {
-    const Faces &lower = region.form.faces->low, &upper = region.form.faces->high;
+DEVICE bool region_between(const Region<ShaftShape> &region, unsigned axis, float low, float high, Bounds &bounds) {
+    const Faces &lower = region.shape.faces->low, &upper = region.shape.faces->high;
     float first = 0.0f, last = 1.0f;
     narrow_shaft(component(axis, lower.from), component(axis, lower.inverse), component(axis, upper.from),
                  component(axis, upper.inverse), low, high, first, last);

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::approach::NearRay;
+use super::ray_clamp::ClampedRay;
 use super::triangle::RayShear;
 use super::{Coverage, Hit, ShortSegments, ShortTest, Triangle};
 
@@ -26,14 +26,14 @@ pub(super) struct Closest<'a> {
 
 impl<'a> Closest<'a> {
     #[inline(always)]
-    pub(super) fn new(ray: &NearRay, coverage: &'a Coverage) -> Closest<'a> {
+    pub(super) fn new(ray: &ClampedRay, coverage: &'a Coverage) -> Closest<'a> {
         let shear = RayShear::new(ray.origin, ray.direction);
         Closest { coverage, shear, t_max: ray.t_max, limit: ray.t_max, best: Hit::MISS }
     }
 
     /// Continues with a known hit.
     #[inline(always)]
-    pub(super) fn from(ray: &NearRay, coverage: &'a Coverage, best: Hit) -> Closest<'a> {
+    pub(super) fn from(ray: &ClampedRay, coverage: &'a Coverage, best: Hit) -> Closest<'a> {
         Closest { best, limit: ray.t_max.min(best.t), ..Closest::new(ray, coverage) }
     }
 }
@@ -68,13 +68,13 @@ pub(super) struct All<'a> {
 impl<'a> All<'a> {
     /// They take the place of what is in `hits`.
     #[inline(always)]
-    pub(super) fn new(ray: &NearRay, coverage: &'a Coverage, hits: &'a mut Vec<Hit>) -> All<'a> {
+    pub(super) fn new(ray: &ClampedRay, coverage: &'a Coverage, hits: &'a mut Vec<Hit>) -> All<'a> {
         hits.clear();
         All { coverage, shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hits }
     }
 
     /// Hands over the hits of `ray`, each once and in order, if there are any.
-    pub(super) fn finish(self, ray: &NearRay, take: impl FnOnce(&[Hit])) {
+    pub(super) fn finish(self, ray: &ClampedRay, take: impl FnOnce(&[Hit])) {
         let hits = self.hits;
         if hits.is_empty() {
             return;
@@ -113,7 +113,7 @@ pub(super) struct Any<'a> {
 
 impl<'a> Any<'a> {
     #[inline(always)]
-    pub(super) fn new(ray: &NearRay, coverage: &'a Coverage) -> Any<'a> {
+    pub(super) fn new(ray: &ClampedRay, coverage: &'a Coverage) -> Any<'a> {
         Any { coverage, shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hit: false }
     }
 }

@@ -3,7 +3,7 @@
 // Every function exists for each of the structures. All give the same bits.
 #pragma once
 
-#include "accel/approach.cuh"
+#include "accel/ray_clamp.cuh"
 #include "accel/brute_force.cuh"
 #include "accel/bvh/walk.cuh"
 #include "accel/grid/short_walk.cuh"
@@ -12,7 +12,7 @@
 // The closest hit of a ray.
 template <class Structure>
 DEVICE Hit closest_hit(const Structure &structure, const Tally &tally, const Ray &ray) {
-    const NearRay near = near_ray(structure.approach, ray);
+    const ClampedRay near = clamped_ray(structure.ray_clamp, ray);
     if (near.scale == 0.0)
         return hit_nothing();
     Closest closest = find_closest(near.ray);
@@ -25,7 +25,7 @@ DEVICE Hit closest_hit(const Structure &structure, const Tally &tally, const Ray
 // Whether anything blocks a segment. `last` is the place of a triangle that blocked a similar one and is tested first, or Hit::NONE.
 template <class Structure>
 DEVICE bool occluded(const Structure &structure, const Tally &tally, const Ray &segment, unsigned &last) {
-    const NearRay near = near_ray(structure.approach, segment);
+    const ClampedRay near = clamped_ray(structure.ray_clamp, segment);
     if (near.scale == 0.0)
         return false;
     Any any = find_any(near.ray);

@@ -27,7 +27,7 @@ use lightmesh_memory::Budget;
 use lightmesh_scene::LightKind;
 
 use super::super::stored::{Stored, StoredAnswers, StoredColumn};
-use super::super::{Content, Places, Section, Seen};
+use super::super::{ColumnKey, Content, Places, Section};
 use super::fault::MeshFault;
 use super::input::Input;
 use super::output::write_difference;
@@ -38,7 +38,7 @@ const KEY_BITS: u32 = 3 * AXIS_BITS;
 /// Numbers that are written at once.
 const AT_ONCE: usize = 1 << 16;
 /// More lights than this are no scene's.
-const MOST_LIGHTS: u32 = 1 << 20;
+const MAX_LIGHTS: u32 = 1 << 20;
 /// Samples up to this have shares of one byte.
 const SMALL: u32 = 255;
 
@@ -92,7 +92,7 @@ fn write_column(output: &mut impl Write, before: Option<&StoredColumn>, column: 
     }
 }
 
-fn write_seen(output: &mut impl Write, Seen { kind, glows, sampling }: &Seen) -> io::Result<()> {
+fn write_seen(output: &mut impl Write, ColumnKey { kind, glows, sampling }: &ColumnKey) -> io::Result<()> {
     let (name, numbers): (u8, Vec<f32>) = match *kind {
         LightKind::Point { position, spread } => (0, [&position.to_array()[..], &[spread]].concat()),
         LightKind::Directional { direction, angle } => (1, [&direction.to_array()[..], &[angle]].concat()),
@@ -167,7 +167,7 @@ impl<R: Read> Input<R> {
         let (anchor, step) = (self.vector()?, self.float()?);
         let number = UVec3::new(self.int()?, self.int()?, self.int()?);
         let (lights, bricks) = (self.int()?, self.long()?);
-        if lights > MOST_LIGHTS {
+        if lights > MAX_LIGHTS {
             return Err(MeshFault::Damaged("it has more lights than a scene"));
         }
         let bricks = self.bricks(bricks)?;
@@ -226,7 +226,7 @@ impl<R: Read> Input<R> {
         Ok(StoredColumn { seen, known, answers })
     }
 
-    fn seen(&mut self) -> Result<Seen, MeshFault> {
+    fn seen(&mut self) -> Result<ColumnKey, MeshFault> {
         let [name] = self.bytes()?;
         let kind = match name {
             0 => LightKind::Point { position: self.vector()?, spread: self.float()? },
@@ -247,6 +247,6 @@ impl<R: Read> Input<R> {
         if samples > u32::from(u16::MAX) {
             return Err(MeshFault::Damaged("a light has too many samples"));
         }
-        Ok(Seen { kind, glows: name == 7, sampling: (samples > 0).then_some((samples, seed)) })
+        Ok(ColumnKey { kind, glows: name == 7, sampling: (samples > 0).then_some((samples, seed)) })
     }
 }

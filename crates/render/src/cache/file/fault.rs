@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use lightmesh_files::{ReadError, TargetError};
-use lightmesh_memory::Short;
+use lightmesh_memory::OverBudget;
 
 use super::frame::VERSION;
 use crate::error::RenderError;
@@ -89,7 +89,7 @@ pub enum MeshFault {
     Damaged(&'static str),
     /// Its content does not fit into memory.
     #[error("is too large: {0}")]
-    Memory(Short),
+    Memory(OverBudget),
 }
 
 impl MeshFault {

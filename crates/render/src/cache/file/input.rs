@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use glam::Vec3;
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 
 use super::fault::MeshFault;
 
@@ -97,5 +97,5 @@ impl<R: Read> Input<R> {
 
 /// What does not fit.
 fn short(needed: u64, budget: Budget) -> Result<(), MeshFault> {
-    budget.check(needed).map_err(|short: Short| MeshFault::Memory(short))
+    budget.check(needed).map_err(|short: OverBudget| MeshFault::Memory(short))
 }

@@ -138,7 +138,7 @@ impl<R: Runtime> DeviceBounce<R> {
         device.cuda.extend(&mut self.links, "links of nodes", linked, linked + new * FAN.len())?;
         let at_once = device.at_once(FAN);
         for first in (0..new).step_by(at_once) {
-            device.wave.job.check()?;
+            device.wave.context.check()?;
             let count = at_once.min(new - first);
             let from = TakeSites { sites: self.sites.input(), numbers: self.unlinked.input(), ..TakeSites::zeroed() };
             let sites = taken(device, TakeSites { first: first as u32, ..from }, count)?;

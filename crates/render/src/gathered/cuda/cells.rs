@@ -123,7 +123,7 @@ impl<R: Runtime> DeviceCells<R> {
         let cuda = device.cuda;
         cuda.extend(&mut self.ranges, "ranges of sites", new.start, self.names.room())?;
         for first in new.clone().step_by(CELLS_AT_ONCE) {
-            device.wave.job.check()?;
+            device.wave.context.check()?;
             let count = CELLS_AT_ONCE.min(new.end - first);
             let most = self.site_number + count * SURFACE_KINDS as usize;
             cuda.extend(&mut self.sites, "sites", self.site_number, most)?;

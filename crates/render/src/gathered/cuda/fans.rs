@@ -11,7 +11,7 @@ use crate::error::RenderError;
 use crate::gathered::fan::Fan;
 use crate::gathered::guide::blocks;
 use crate::gpu::{PerStructure, per_structure, sampling};
-use crate::job::Sampling;
+use crate::render_context::Sampling;
 
 const TRACE: PerStructure = per_structure!("gathered_rays", "trace_fans");
 const SEE: PerStructure = per_structure!("gathered_rays", "see");
@@ -94,7 +94,7 @@ impl<R: Runtime> DeviceFans<R> {
         let brightness = pool.room("brightness of fans", count)?;
         let cone = fan.cone();
         // The first of several samples: a single one would be the centre of a light.
-        let sampling = sampling(Sampling { samples: 2, spread: true, ..wave.job.sampling });
+        let sampling = sampling(Sampling { samples: 2, spread: true, ..wave.context.sampling });
         let record = Record {
             scene: wave.scene.record,
             rays: Rays {

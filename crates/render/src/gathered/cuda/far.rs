@@ -128,7 +128,7 @@ fn seen<R: Runtime>(
     fan: Fan,
     guides: Option<&Guides<R>>,
 ) -> Result<DeviceFans<R>, RenderError> {
-    device.wave.job.check()?;
+    device.wave.context.check()?;
     let fans = DeviceFans::cast(device, Sites { sites, reach: f32::INFINITY }, fan, guides)?;
     fans.see(device)?;
     bounce.complete(device, &fans)?;

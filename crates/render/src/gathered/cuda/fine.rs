@@ -62,7 +62,7 @@ impl<R: Runtime> DeviceFine<R> {
         device.cuda.extend(&mut self.fine, "fine light", new.start, new.end)?;
         let at_once = device.at_once(coarse.fans.near);
         for first in new.clone().step_by(at_once) {
-            device.wave.job.check()?;
+            device.wave.context.check()?;
             let count = at_once.min(new.end - first);
             let places = device.cuda.pool().room("fine sites that ask", count)?;
             let from = TakeSites {

@@ -30,15 +30,15 @@ use far::DeviceFar;
 use fine::{Asking, Coarse, DeviceFine};
 
 /// Surface points that are processed at once, and rays that are cast at once, at least.
-const LEAST_AT_ONCE: usize = 1 << 18;
+const MIN_AT_ONCE: usize = 1 << 18;
 /// How many times more there may be, at most.
-const MOST_TIMES: u64 = 8;
+const MAX_TIMES: u64 = 8;
 /// Bytes of a point: its places and links.
 const BYTES_OF_POINT: u64 = 512;
 /// Bytes of a ray with all that is known of it, three times, for what it hits asks again.
 const BYTES_OF_RAY: u64 = 3 * 160;
 /// What takes memory at once, at least: also tables while they grow.
-const LEAST_BYTES: u64 = (BYTES_OF_POINT + BYTES_OF_RAY) * LEAST_AT_ONCE as u64 + (64 << 20);
+const MIN_BYTES: u64 = (BYTES_OF_POINT + BYTES_OF_RAY) * MIN_AT_ONCE as u64 + (64 << 20);
 
 /// Tables take at most so many times the memory of what is saved: half of their slots are empty, or more.
 const TIMES_OF_SAVED: u64 = 4;
@@ -105,7 +105,7 @@ pub struct DeviceGathered<R: Runtime> {
 
 /// Bytes that gathering needs on a device, besides what it keeps.
 pub(crate) fn memory_at_once() -> u64 {
-    LEAST_BYTES
+    MIN_BYTES
 }
 
 /// The mean radiance that each surface point of a wave receives, weighted by the cosine; zero for rays that see nothing.
@@ -116,13 +116,13 @@ pub(crate) fn gather<R: Runtime>(
     light: &mut DeviceSurfaceLight<R>,
 ) -> Result<DeviceGathered<R>, RenderError> {
     // More at once keep a large device busy; they change no result.
-    let times = cuda.memory_left().map_or(1, |left| (left / PART_KEPT / LEAST_BYTES).clamp(1, MOST_TIMES));
-    let at_once = LEAST_AT_ONCE * times as usize;
+    let times = cuda.memory_left().map_or(1, |left| (left / PART_KEPT / MIN_BYTES).clamp(1, MAX_TIMES));
+    let at_once = MIN_AT_ONCE * times as usize;
     let device = Device { cuda, wave, rays: at_once };
     let rays = wave.rays.len();
     let result = cuda.pool().zeros("gathered light", rays)?;
     for first in (0..rays).step_by(at_once) {
-        wave.job.check()?;
+        wave.context.check()?;
         let most = cuda.memory_left().map(|left| (left + light.memory()) / PART_KEPT);
         if most.is_some_and(|most| light.memory() > most) {
             light.kept = None;
@@ -132,7 +132,7 @@ pub(crate) fn gather<R: Runtime>(
         let count = at_once.min(rays - first);
         gather_part(&device, how, &mut kept, first..first + count, &result)?;
         light.kept = Some(kept);
-        wave.job.advance(count as u64);
+        wave.context.advance(count as u64);
     }
     Ok(DeviceGathered { light: result })
 }

@@ -10,8 +10,8 @@ use super::first::{Extent, Places, all_are_points, place_of, places};
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
-use crate::shadow::sight::Emitter;
-use crate::shadow::{Aim, SEGMENTS, hidden, shadow_segment};
+use crate::shadow::projected_light::Emitter;
+use crate::shadow::{SEGMENTS, ShadowTarget, hidden, shadow_segment};
 use crate::stages::primary_rays::cpu::{camera_rays, closest_hits};
 use crate::stages::shadow_rays::cpu::{Batch, shadow_rays};
 use crate::view::View;
@@ -20,16 +20,16 @@ use crate::view::View;
 const RUN: usize = 1024;
 
 /// The visible share of each light from each surface point.
-pub(crate) fn adaptive_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
-    if all_are_points(aim, wave.lights()) {
-        return shadow_rays(wave, &Aim::Middle);
+pub(crate) fn adaptive_shadows(wave: &HostWave, target: &ShadowTarget) -> Visibility {
+    if all_are_points(target, wave.lights()) {
+        return shadow_rays(wave, &ShadowTarget::Center);
     }
-    let Some(view) = wave.rays.view.filter(|_| !wave.hits.is_empty()) else { return shadow_rays(wave, aim) };
-    let rows = wave.rows(aim);
+    let Some(view) = wave.rays.view.filter(|_| !wave.hits.is_empty()) else { return shadow_rays(wave, target) };
+    let rows = wave.rows(target);
     let band = Band::new(wave, &view);
     let mut visibility = Visibility::dark(wave.group(), wave.hits.len());
     let planes = visibility.share.chunks_exact_mut(wave.hits.len());
-    for (emitter, shares) in Emitter::all(wave, aim, &rows).iter().zip(planes) {
+    for (emitter, shares) in Emitter::all(wave, target, &rows).iter().zip(planes) {
         if emitter.is_point() {
             band.all_samples(emitter, shares);
         } else {
@@ -68,7 +68,7 @@ impl<'a> Band<'a> {
     fn all_samples(&self, emitter: &Emitter, shares: &mut [f32]) {
         shares.par_chunks_mut(RUN).enumerate().for_each(|(run, shares)| {
             let first = run * RUN;
-            self.wave.job.piece(2 * shares.len(), || {
+            self.wave.context.piece(2 * shares.len(), || {
                 let mut batch = Batch::new(self.wave);
                 batch.take(first..first + shares.len());
                 batch.shares(emitter, |ray, share| shares[ray - first] = share);
@@ -84,15 +84,15 @@ impl<'a> Band<'a> {
             let wave = HostWave { rays, hits, ..*self.wave };
             self.first_rays(&wave, emitter, &answers);
         }
-        let (wave, job) = (self.wave, self.wave.job);
-        Tally::add(&job.tally.shadow_rays, self.first_rays(wave, emitter, &answers));
+        let (wave, context) = (self.wave, self.wave.context);
+        Tally::add(&context.tally.shadow_rays, self.first_rays(wave, emitter, &answers));
         let wide = self.widened(&answers);
 
         // 2. and 3. Where neighbours agree, the share is theirs; elsewhere all samples are tested.
         let most = emitter.sets.iter().flat_map(|set| set.count).sum::<u32>().max(1) as usize;
         shares.par_chunks_mut(RUN).enumerate().for_each(|(run, shares)| {
             let first = run * RUN;
-            job.piece(shares.len(), || {
+            context.piece(shares.len(), || {
                 let mut open = Vec::new();
                 for (ray, share) in (first..).zip(shares.iter_mut()) {
                     let place = self.place(wave.rays.pixels[ray]);
@@ -125,9 +125,9 @@ impl<'a> Band<'a> {
             let mut cast = 0;
             let trace = || cast = self.first_rays_of(wave, emitter, rays.clone(), answers);
             if is_own {
-                wave.job.piece(rays.len(), trace)
+                wave.context.piece(rays.len(), trace)
             } else {
-                wave.job.piece(0, trace)
+                wave.context.piece(0, trace)
             }
             cast
         });
@@ -139,7 +139,7 @@ impl<'a> Band<'a> {
         for ray in rays.filter(|&ray| wave.sees(ray)) {
             let point = emitter.seen_from(&wave.scene.geometry, &wave.shadow_point(ray));
             let pixel = wave.rays.pixels[ray];
-            let extent = Extent::new(emitter, &point, wave.scene.geometry.reach(point.origin));
+            let extent = Extent::new(emitter, &point, wave.scene.geometry.sun_distance(point.origin));
             let Some(known) = extent.at_horizon(point.normal) else { continue };
             let target = extent.target(point.origin, &self.places, place_of(wave.rays.window.place(pixel)));
             if point.normal.dot(target - point.origin) > 0.0 {

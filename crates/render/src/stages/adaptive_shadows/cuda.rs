@@ -14,7 +14,7 @@ use super::first::{all_are_points, places};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceHits, DeviceRays, DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerModule, PerStructure, Work, blocks_for, per_module, per_structure};
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::shadow::launch::SampleSets;
 use crate::stages::primary_rays::cuda::closest_hits;
 use crate::stages::shadow_rays::cuda::shadow_rays;
@@ -30,17 +30,17 @@ pub(crate) const LIGHTS: usize = 16;
 pub(crate) fn adaptive_shadows<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
-    aim: &Aim,
+    target: &ShadowTarget,
 ) -> Result<DeviceVisibility<R>, RenderError> {
-    if all_are_points(aim, &wave.scene.host.scene.lights) {
-        return shadow_rays(cuda, wave, &Aim::Middle);
+    if all_are_points(target, &wave.scene.host.scene.lights) {
+        return shadow_rays(cuda, wave, &ShadowTarget::Center);
     }
     if !wave.rays.is_from_camera() {
-        return shadow_rays(cuda, wave, aim);
+        return shadow_rays(cuda, wave, target);
     }
     let (rays, lights) = (wave.rays.len(), wave.group());
     let visibility = DeviceVisibility::dark(cuda, rays, lights.clone())?;
-    let band = Band::new(cuda, wave, SampleSets::new(wave.rows(aim)))?;
+    let band = Band::new(cuda, wave, SampleSets::new(wave.rows(target)))?;
     // Entries are numbered with 32 bits.
     let at_once = LIGHTS.min(u32::MAX as usize / rays.max(1)).max(1);
     for first in lights.clone().step_by(at_once) {
@@ -76,7 +76,7 @@ impl<'a, R: Runtime> Band<'a, R> {
             let record = Rays { first_pixel: part.start * width, count: part.len() as u32 * width, ..record };
             let rays = DeviceRays::new(record, None, wave.rays.spacing);
             let counts = (Tally { shards: uncounted.output() }, 0);
-            let hits = closest_hits(cuda, wave.job, wave.scene, &rays, counts)?;
+            let hits = closest_hits(cuda, wave.context, wave.scene, &rays, counts)?;
             margins.push((rays, hits, u64::from(part.start - rows.start) * u64::from(width)));
         }
         let place = |row: u32| u64::from(row - rows.start) * u64::from(width);
@@ -132,7 +132,7 @@ impl<'a, R: Runtime> Band<'a, R> {
             let shadows = of_lights(sets.record(cuda, wave, visibility, set)?);
             let blocks = (count as u64).div_ceil(u64::from(BLOCK));
             let work = Work::of_rays(blocks, &(0..sets.most(set)), progress(set + 1) - progress(set));
-            cuda.in_pieces(wave.job, kernel, work, |piece| {
+            cuda.in_pieces(wave.context, kernel, work, |piece| {
                 cuda.launch(kernel, blocks_for(&piece, BLOCK), &of_piece(&record, &shadows, &piece))
             })?;
         }
@@ -146,7 +146,7 @@ impl<'a, R: Runtime> Band<'a, R> {
         let rays = DeviceRays::<R>::new(shadows.rays, None, self.wave.rays.spacing);
         let lights = u64::from(shadows.first_light)..u64::from(shadows.end_light);
         let work = Work::of_rays(rays.blocks(BLOCK_SIDE), &lights, progress);
-        cuda.in_pieces(self.wave.job, kernel, work, |piece| {
+        cuda.in_pieces(self.wave.context, kernel, work, |piece| {
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &of_piece(&record, &shadows, &piece))
         })
     }

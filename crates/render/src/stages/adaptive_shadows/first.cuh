@@ -2,7 +2,7 @@
 #pragma once
 
 #include "data/rays.cuh"
-#include "shadow/sight.cuh"
+#include "shadow/projected_light.cuh"
 
 // The place of the ray of a pixel of a view's window.
 DEVICE unsigned place_of(const View &view, unsigned pixel) {

@@ -5,13 +5,13 @@ use lightmesh_layout::constants::{ANSWER_STRADDLES, AROUND, FIRST_TARGETS, NEIGH
 use lightmesh_scene::{Light, LightKind};
 
 use crate::sampling::seen_center;
-use crate::shadow::Aim;
-use crate::shadow::sight::{Emitter, Shape, disc_of};
+use crate::shadow::ShadowTarget;
+use crate::shadow::projected_light::{Emitter, Shape, disc_of};
 use crate::surface::SurfacePoint;
 
 /// Whether no light has a size: then there is one ray to each, and nothing to disagree on.
-pub(super) fn all_are_points(aim: &Aim, lights: &[Light]) -> bool {
-    lights.iter().all(|light| Shape::of(aim, light) == Shape::Point)
+pub(super) fn all_are_points(target: &ShadowTarget, lights: &[Light]) -> bool {
+    lights.iter().all(|light| Shape::of(target, light) == Shape::Point)
 }
 
 /// The outermost points that first rays are cast to, as a part of a light's half width. Shadows that hide less than what lies beyond

@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, u32x8};
-use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
+use lightmesh_layout::constants::{MAX_ROWS, MAX_WORDS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
 use lightmesh_trace::accel::TangentPlanes;
@@ -13,36 +13,36 @@ use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedGeometry;
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::shadow::cuts::Cuts;
-use crate::shadow::occlusion::{Bits, Offsets, Sights, gathered};
-use crate::shadow::sight::{Emitter, Sight};
+use crate::shadow::occlusion::{Bits, Offsets, ProjectedLights, gathered};
+use crate::shadow::projected_light::{Emitter, ProjectedLight};
 use crate::surface::SurfacePoint;
 
 /// Maximum number of surface points per task.
 const BATCH: usize = 256;
 
 /// The visible share of each light from each surface point.
-pub(crate) fn area_shadows(wave: &HostWave, aim: &Aim) -> Visibility {
-    let rows = wave.rows(aim);
-    let emitters = Emitter::all(wave, aim, &rows);
+pub(crate) fn area_shadows(wave: &HostWave, target: &ShadowTarget) -> Visibility {
+    let rows = wave.rows(target);
+    let emitters = Emitter::all(wave, target, &rows);
     let mut visibility = Visibility { weighed: true, ..Visibility::dark(wave.group(), wave.hits.len()) };
     let level = Level::new();
     visibility.parts(BATCH).into_par_iter().enumerate().for_each(|(number, mut shares)| {
         let first = number * BATCH;
         let rays = first..wave.hits.len().min(first + BATCH);
-        wave.job.piece(rays.len(), || {
+        wave.context.piece(rays.len(), || {
             let (mut found, mut asked) = (Vec::new(), 0);
             for ray in rays.filter(|&ray| wave.sees(ray)) {
                 let point = wave.shadow_point(ray);
                 for (emitter, shares) in emitters.iter().zip(&mut shares) {
                     let point = emitter.seen_from(&wave.scene.geometry, &point);
-                    let sight = emitter.sight(wave, ray, &point);
+                    let projected = emitter.projected(wave, ray, &point);
                     shares[ray - first] =
-                        dispatch!(level, simd => share(simd, wave, emitter, &point, &sight, &mut found, &mut asked));
+                        dispatch!(level, simd => share(simd, wave, emitter, &point, &projected, &mut found, &mut asked));
                 }
             }
-            Tally::add(&wave.job.tally.shadow_rays, asked);
+            Tally::add(&wave.context.tally.shadow_rays, asked);
         });
     });
     visibility
@@ -63,21 +63,21 @@ fn share<S: Simd>(
     wave: &HostWave,
     emitter: &Emitter,
     point: &SurfacePoint,
-    sight: &Sight,
+    projected: &ProjectedLight,
     found: &mut Vec<u32>,
     asked: &mut u64,
 ) -> f32 {
-    let sights = Sights::splat(simd, point, sight);
+    let projected_lights = ProjectedLights::splat(simd, point, projected);
     let PreparedGeometry { triangles, coverage, .. } = &*wave.scene.geometry;
     if emitter.is_point() {
-        if sights.center_above_horizon(simd).to_bitmask() & 1 == 0 {
+        if projected_lights.center_above_horizon(simd).to_bitmask() & 1 == 0 {
             return 0.0;
         }
         *asked += 1;
         search(wave, emitter, point, found);
         let hidden = |indices| {
             let held = (gathered(simd, triangles, indices), Cuts::gathered(coverage, triangles, indices));
-            sights.hides_center(simd, held, 0xff) != 0
+            projected_lights.hides_center(simd, held, 0xff) != 0
         };
         return emitter.share(u32::from(!found.chunks(LANES).any(hidden)));
     }
@@ -85,8 +85,8 @@ fn share<S: Simd>(
     let mut searched = false;
     let mut count = 0;
     for set in emitter.sets {
-        let offsets = offsets(simd, set, sight);
-        let mut bits = initial(simd, &sights, set, &offsets, sight);
+        let offsets = offsets(simd, set, projected);
+        let mut bits = initial(simd, &projected_lights, set, &offsets, projected);
         let unhidden = words(&bits, set).map(u32::count_ones).sum::<u32>();
         if unhidden == 0 {
             continue;
@@ -98,7 +98,7 @@ fn share<S: Simd>(
         }
         for indices in found.chunks(LANES) {
             let held = (gathered(simd, triangles, indices), Cuts::gathered(coverage, triangles, indices));
-            sights.hide(simd, held, (set, &offsets), 0xff, &mut bits);
+            projected_lights.hide(simd, held, (set, &offsets), 0xff, &mut bits);
         }
         let left = words(&bits, set).map(u32::count_ones).sum::<u32>();
         count += left;
@@ -106,7 +106,7 @@ fn share<S: Simd>(
             weighed.count(unhidden, left);
             if emitter.sets.len() > 1 || !weighed.is_plain() {
                 let bits: Vec<u32> = words(&bits, set).collect();
-                weighed.add(&emitter.weights(point, sight), sight, set, &bits);
+                weighed.add(&emitter.weights(point, projected), projected, set, &bits);
             }
         }
     }
@@ -114,20 +114,26 @@ fn share<S: Simd>(
 }
 
 #[inline(always)]
-fn offsets<S: Simd>(simd: S, set: &SampleRows, sight: &Sight) -> Offsets<S> {
-    let mut offsets = [fearless_simd::f32x8::splat(simd, 0.0); MOST_ROWS as usize];
+fn offsets<S: Simd>(simd: S, set: &SampleRows, projected: &ProjectedLight) -> Offsets<S> {
+    let mut offsets = [fearless_simd::f32x8::splat(simd, 0.0); MAX_ROWS as usize];
     for (row, offset) in offsets.iter_mut().enumerate().take(set.rows as usize) {
-        *offset = fearless_simd::f32x8::splat(simd, sight.offset(set, row));
+        *offset = fearless_simd::f32x8::splat(simd, projected.offset(set, row));
     }
     offsets
 }
 
 /// The samples that count and are above the horizon.
 #[inline(always)]
-fn initial<S: Simd>(simd: S, sights: &Sights<S>, set: &SampleRows, offsets: &Offsets<S>, sight: &Sight) -> Bits<S> {
-    let mut bits = sights.above_horizon(simd, set, offsets);
+fn initial<S: Simd>(
+    simd: S,
+    projected_lights: &ProjectedLights<S>,
+    set: &SampleRows,
+    offsets: &Offsets<S>,
+    projected: &ProjectedLight,
+) -> Bits<S> {
+    let mut bits = projected_lights.above_horizon(simd, set, offsets);
     for (word, bits) in bits.iter_mut().enumerate().take(set.words as usize) {
-        *bits &= u32x8::splat(simd, sight.valid_word(set, word));
+        *bits &= u32x8::splat(simd, projected.valid_word(set, word));
     }
     bits
 }
@@ -135,7 +141,7 @@ fn initial<S: Simd>(simd: S, sights: &Sights<S>, set: &SampleRows, offsets: &Off
 /// The samples that no lane's triangle hides, by word.
 #[inline(always)]
 fn words<S: Simd>(bits: &Bits<S>, set: &SampleRows) -> impl Iterator<Item = u32> {
-    let words: [u32; MOST_WORDS as usize] =
+    let words: [u32; MAX_WORDS as usize] =
         bits.map(|word| <[u32; LANES]>::from(word).into_iter().fold(!0, |a, b| a & b));
     words.into_iter().take(set.words as usize)
 }

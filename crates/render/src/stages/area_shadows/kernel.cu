@@ -15,31 +15,31 @@
 #include "shadow/weights.cuh"
 
 // The value of one lane.
-DEVICE Sight broadcast(const Sight &sight, unsigned lane) {
-    Sight result = sight;
-    result.center = warp_broadcast(sight.center, lane);
-    result.along = warp_broadcast(sight.along, lane);
-    result.across = warp_broadcast(sight.across, lane);
-    result.end = __shfl_sync(ALL_LANES, sight.end, lane);
+DEVICE Sight broadcast(const Sight &projected, unsigned lane) {
+    Sight result = projected;
+    result.center = warp_broadcast(projected.center, lane);
+    result.along = warp_broadcast(projected.along, lane);
+    result.across = warp_broadcast(projected.across, lane);
+    result.end = __shfl_sync(ALL_LANES, projected.end, lane);
     return result;
 }
 
 // What a lane's triangle, if it has one, leaves of the samples.
 template <unsigned WORDS, class Handle>
-DEVICE void test_triangle(const SurfacePoint &point, const Sight &sight, Shape shape, const RowTable &table, const Coverage *coverage,
-                          const Handle &triangle, bool has, Seen<WORDS> &seen) {
+DEVICE void test_triangle(const SurfacePoint &point, const Sight &projected, Shape shape, const RowTable &table,
+                          const Coverage *coverage, const Handle &triangle, bool has, Seen<WORDS> &seen) {
     const Occluding own = occluding(load_corners(triangle));
     const Hiding hiding = {own.parts, coverage, cut_of(triangle)};
     if (shape == SHAPE_POINT)
-        seen.bits[0] &= has && hides_center(point, sight, hiding) ? 0 : 1;
+        seen.bits[0] &= has && hides_center(point, projected, hiding) ? 0 : 1;
     else
-        hide<WORDS>(point, sight, hiding, table, has, seen.bits);
+        hide<WORDS>(point, projected, hiding, table, has, seen.bits);
 }
 
 // The samples that the surface point of lane `owner` sees: `seen` without those that any triangle hides. `table` has that lane's offsets.
 template <unsigned WORDS, class Structure>
 DEVICE void test_point(const Shadows &args, const Structure &structure, const Light &light, Shape shape, ShaftFaces *faces,
-                       const SurfacePoint &point, const Sight &sight, const RowTable &table, PlanesMemory *planes,
+                       const SurfacePoint &point, const Sight &projected, const RowTable &table, PlanesMemory *planes,
                        unsigned *found, unsigned *memory, Seen<WORDS> &seen) {
     const unsigned lane = lane_of_thread();
     const Bounds origin = {point.origin, point.origin};
@@ -54,7 +54,8 @@ DEVICE void test_point(const Shadows &args, const Structure &structure, const Li
         count -= taken;
         if (taken != 0) {
             const unsigned place = found[count + (lane < taken ? lane : 0)];
-            test_triangle<WORDS>(point, sight, shape, table, coverage_of(structure), triangle_at(structure, place), lane < taken, seen);
+            test_triangle<WORDS>(point, projected, shape, table, coverage_of(structure), triangle_at(structure, place),
+                                 lane < taken, seen);
         }
         __syncwarp();
     }
@@ -63,7 +64,7 @@ DEVICE void test_point(const Shadows &args, const Structure &structure, const Li
 // Adds what a lane sees of a light with this set of samples to its share.
 template <unsigned WORDS>
 DEVICE void add_share(const Shadows &args, unsigned light, unsigned ray, Shape shape, const SampleRows &set, const SurfacePoint &point,
-                      const Sight &sight, const RowTable &table, const Seen<WORDS> &seen, unsigned above) {
+                      const Sight &projected, const RowTable &table, const Seen<WORDS> &seen, unsigned above) {
     const Light &emitter = args.scene.lights[light];
     const float near = nearness_of(args, shape, emitter, point);
     const unsigned left = number(seen);
@@ -73,7 +74,7 @@ DEVICE void add_share(const Shadows &args, unsigned light, unsigned ray, Shape s
     }
     WeightSums sums = {0.0f, 0.0f};
     if (!is_plain(args, above, left))
-        sums = weights_of<WORDS>(&emitter, point.normal, sight, &set, table, seen);
+        sums = weights_of<WORDS>(&emitter, point.normal, projected, &set, table, seen);
     add_weighed(args, light, ray, near, Weighed{above, left, sums.all, sums.lit});
 }
 
@@ -102,14 +103,14 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
         const SampleRows &set = args.sets[shape == SHAPE_RECTANGLE ? SHAPE_RECTANGLE : SHAPE_DISC];
         if (shape == SHAPE_POINT && args.set != 0)
             continue;
-        Sight sight = {};
+        Sight projected = {};
         SurfacePoint point = flat;
         if (has)
             point = shadow_point_of(args.scene, args.rays, args.hits, ray, emitter, flat);
         if (has)
-            sight = sight_of(args.scene, args.sampling, light, shape, set.lines, point, ray_key(args.rays, ray));
+            projected = projected_light_of(args.scene, args.sampling, light, shape, set.lines, point, ray_key(args.rays, ray));
         const RowTable own = row_table(tables, shape, offsets + lane);
-        Seen<WORDS> seen = seen_unhidden<WORDS>(has, point, sight, shape, set, own);
+        Seen<WORDS> seen = seen_unhidden<WORDS>(has, point, projected, shape, set, own);
         __syncwarp();
         const unsigned above = number(seen);
         count(tally_shard(args.tally).shadow_rays, above);
@@ -121,7 +122,7 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
             UNROLL
             for (unsigned word = 0; word < WORDS; ++word)
                 left.bits[word] = __shfl_sync(ALL_LANES, seen.bits[word], owner);
-            test_point<WORDS>(args, structure, emitter, shape, faces, asked, broadcast(sight, owner),
+            test_point<WORDS>(args, structure, emitter, shape, faces, asked, broadcast(projected, owner),
                               row_table(tables, shape, offsets + owner), planes, found, memory, left);
             UNROLL
             for (unsigned word = 0; word < WORDS; ++word) {
@@ -130,7 +131,7 @@ DEVICE void shadows_of_points(const Shadows &args, const Structure &structure) {
             }
         }
         if (has)
-            add_share<WORDS>(args, light, ray, shape, set, point, sight, own, seen, above);
+            add_share<WORDS>(args, light, ray, shape, set, point, projected, own, seen, above);
         __syncwarp();
     }
 }
@@ -142,7 +143,7 @@ template <class Structure>
 DEVICE void area_shadows_3(const Shadows &args, const Structure &structure) { shadows_of_points<3>(args, structure); }
 
 template <class Structure>
-DEVICE void area_shadows_10(const Shadows &args, const Structure &structure) { shadows_of_points<MOST_WORDS>(args, structure); }
+DEVICE void area_shadows_10(const Shadows &args, const Structure &structure) { shadows_of_points<MAX_WORDS>(args, structure); }
 
 KERNEL_PER_STRUCTURE(area_shadows_1, Shadows, WARP, 16)
 KERNEL_PER_STRUCTURE(area_shadows_3, Shadows, WARP, 16)

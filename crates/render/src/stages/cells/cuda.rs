@@ -38,7 +38,7 @@ pub(crate) fn cells<R: Runtime>(
     };
     // 1. to 3. Each tile sorts its surface points by cell and splits them into items.
     let progress = wave.rays.len() as u64;
-    cuda.in_pieces(wave.job, GROUP, Work { units: tiles, cost: 1, first: FIRST_TILES, progress }, |piece| {
+    cuda.in_pieces(wave.context, GROUP, Work { units: tiles, cost: 1, first: FIRST_TILES, progress }, |piece| {
         cuda.launch(GROUP, blocks_for(&piece, TILE), &GroupCells { first_block: piece.start, ..record })
     })?;
     // 4. The items of all tiles in one list.

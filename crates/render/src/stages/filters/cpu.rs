@@ -1,7 +1,7 @@
 //! Filtered light on the CPU: all samples of a light from one surface point at once.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{FILTER_LEVELS, MOST_THROUGHS, PART_OF_LEVEL};
+use lightmesh_layout::constants::{FILTER_LEVELS, MAX_THROUGHS, PART_OF_LEVEL};
 use lightmesh_scene::Bounds;
 use lightmesh_trace::accel::{Hit, Ray, TangentPlanes};
 use rayon::prelude::*;
@@ -13,8 +13,8 @@ use crate::data::visibility::Visibility;
 use crate::data::wave::{HostWave, Wave};
 use crate::prepared::PreparedScene;
 use crate::shading::tint::transmittance;
-use crate::shadow::sight::Emitter;
-use crate::shadow::{Aim, hidden};
+use crate::shadow::projected_light::Emitter;
+use crate::shadow::{ShadowTarget, hidden};
 use crate::stages::primary_rays::cpu::batch;
 use crate::surface::{SurfacePoint, gap_behind, long_segment};
 
@@ -22,17 +22,22 @@ use crate::surface::{SurfacePoint, gap_behind, long_segment};
 const FEW: u32 = 4;
 
 /// `visibility` with what `panes` leave of it.
-pub(crate) fn filters(wave: &HostWave, panes: &PreparedScene, aim: &Aim, mut visibility: Visibility) -> Visibility {
+pub(crate) fn filters(
+    wave: &HostWave,
+    panes: &PreparedScene,
+    target: &ShadowTarget,
+    mut visibility: Visibility,
+) -> Visibility {
     let wave = Wave { lights: visibility.lights.clone().into(), ..*wave };
-    let levels = levels(aim);
-    let rows: Vec<_> = levels.iter().map(|aim| wave.rows(aim)).collect();
-    let emitters: Vec<_> = levels.iter().zip(&rows).map(|(aim, rows)| Emitter::all(&wave, aim, rows)).collect();
+    let levels = levels(target);
+    let rows: Vec<_> = levels.iter().map(|target| wave.rows(target)).collect();
+    let emitters: Vec<_> = levels.iter().zip(&rows).map(|(target, rows)| Emitter::all(&wave, target, rows)).collect();
     visibility.passed = visibility.share.par_iter().map(|&share| Vec3::splat(share)).collect();
     let size = batch(wave.hits.len());
     visibility.colored_parts(size).into_par_iter().enumerate().for_each(|(number, mut planes)| {
         let first = number * size;
         let rays = first..wave.hits.len().min(first + size);
-        wave.job.piece(rays.len(), || {
+        wave.context.piece(rays.len(), || {
             let mut batch = Batch::new(&wave, panes);
             for ray in rays.filter(|&ray| wave.sees(ray)) {
                 let point = wave.shadow_point(ray);
@@ -163,7 +168,7 @@ impl<'a> Batch<'a> {
     fn dimmed_hidden(&self, point: &SurfacePoint) -> Vec<(usize, bool)> {
         let dimmed = || (0..self.targets.len()).filter(|&index| self.left[index] != Vec3::ONE);
         let segments: Vec<Ray> = dimmed().map(|index| long_segment(point.origin, self.targets[index])).collect();
-        Tally::add(&self.wave.job.tally.shadow_rays, segments.len() as u64);
+        Tally::add(&self.wave.context.tally.shadow_rays, segments.len() as u64);
         dimmed().zip(hidden(self.wave, &segments)).collect()
     }
 
@@ -200,7 +205,7 @@ impl<'a> Batch<'a> {
 fn left_behind(panes: &PreparedScene, ray: &Ray, hits: &[Hit]) -> Vec3 {
     let (mut left, mut last, mut next, mut met) = (Vec3::ONE, 0.0, 0.0, 0);
     for hit in hits {
-        if hit.t <= next || met == MOST_THROUGHS {
+        if hit.t <= next || met == MAX_THROUGHS {
             continue;
         }
         // Bodies absorb light from one surface to the next.

@@ -8,7 +8,7 @@ use crate::data::wave::Wave;
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, DeviceScene, Modules, PerStructure, Work, blocks_for, sampling};
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::shadow::launch::SampleSets;
 
 /// One for all scenes: see the kernel.
@@ -22,7 +22,7 @@ pub(crate) fn filters<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     panes: &DeviceScene<R>,
-    aim: &Aim,
+    target: &ShadowTarget,
     visibility: DeviceVisibility<R>,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let lights = visibility.lights.len() as u64;
@@ -30,18 +30,18 @@ pub(crate) fn filters<R: Runtime>(
     let visibility = DeviceVisibility { passed: Some(passed), ..visibility };
     let kernel = KERNEL.of(panes);
     let of_panes = Wave { scene: panes, ..*wave };
-    let with_rows = |aim: Aim| (aim, SampleSets::new(wave.rows(&aim)));
-    let levels: Vec<(Aim, SampleSets)> = levels(aim).into_iter().map(with_rows).collect();
+    let with_rows = |target: ShadowTarget| (target, SampleSets::new(wave.rows(&target)));
+    let levels: Vec<(ShadowTarget, SampleSets)> = levels(target).into_iter().map(with_rows).collect();
     // A light without samples has its centre.
     let slices_of = |sets: &SampleSets| u64::from(sets.count.max(1)) * lights;
     let slices: u64 = levels.iter().map(|(_, sets)| slices_of(sets)).sum();
     let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices.max(1);
     let mut done = 0;
-    for (level, (aim, sets)) in (0..).zip(&levels) {
+    for (level, (target, sets)) in (0..).zip(&levels) {
         for slice in 0..slices_of(sets) {
             let (set, light) = ((slice / lights) as u32, visibility.lights.start as u32 + (slice % lights) as u32);
             let mut shadows = sets.record(cuda, &of_panes, &visibility, set)?;
-            if let Aim::Extent(all) = aim {
+            if let ShadowTarget::Area(all) = target {
                 shadows.sampling = sampling(*all);
             }
             let record = Filters {
@@ -50,7 +50,7 @@ pub(crate) fn filters<R: Runtime>(
                 triangles: panes.triangles(),
                 normals: panes.normals(),
                 passed: visibility.passed_planes(),
-                middle: u32::from(matches!(aim, Aim::Middle)),
+                middle: u32::from(matches!(target, ShadowTarget::Center)),
                 level,
                 parts: wave.parts,
                 spare: 0,
@@ -59,7 +59,7 @@ pub(crate) fn filters<R: Runtime>(
             let pieces = progress(done + 1) - progress(done);
             done += 1;
             let work = Work::of_rays(wave.rays.blocks(BLOCK_SIDE), &(0..rays), pieces);
-            cuda.in_pieces(wave.job, kernel, work, |piece| {
+            cuda.in_pieces(wave.context, kernel, work, |piece| {
                 let shadows = Shadows { first: piece.start, count: piece.end - piece.start, ..record.shadows };
                 cuda.launch(kernel, blocks_for(&piece, BLOCK), &Filters { shadows, ..record })
             })?;

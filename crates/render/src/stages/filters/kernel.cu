@@ -42,7 +42,7 @@ DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 ta
     NearestHits hits;
     do {
         find_nearest(panes, args.shadows.tally, ray, next, hits);
-        for (unsigned number = 0; number < hits.count && met < MOST_THROUGHS; ++number) {
+        for (unsigned number = 0; number < hits.count && met < MAX_THROUGHS; ++number) {
             Hit hit = nearest_hit(hits, panes, number);
             const float t = hit.t;
             if (t <= next)
@@ -54,7 +54,7 @@ DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 ta
             last = t;
             ++met;
         }
-    } while (hits.count == HITS_AT_ONCE && met < MOST_THROUGHS);
+    } while (hits.count == HITS_AT_ONCE && met < MAX_THROUGHS);
     return left;
 }
 
@@ -81,11 +81,12 @@ DEVICE void each_target(const Filters &args, const SurfacePoint &point, unsigned
         return;
     }
     const SampleRows &set = shadows.sets[shape];
-    const Sight sight =
-        sight_of(shadows.scene, shadows.sampling, shadows.first_light, shape, set.lines, point, ray_key(shadows.rays, ray));
+    const Sight projected =
+        projected_light_of(shadows.scene, shadows.sampling, shadows.first_light, shape, set.lines, point,
+                           ray_key(shadows.rays, ray));
     for (unsigned row = 0; row < set.rows; ++row)
-        for (unsigned rest = valid_samples(sight, set, row); rest != 0; rest &= rest - 1)
-            take(point.origin + sample_at(sight, set, row, __ffs(rest) - 1, light.scale));
+        for (unsigned rest = valid_samples(projected, set, row); rest != 0; rest &= rest - 1)
+            take(point.origin + sample_at(projected, set, row, __ffs(rest) - 1, light.scale));
 }
 
 // What is left of a light on the way to the samples of a set.

@@ -22,17 +22,17 @@ pub(crate) mod cpu;
 pub(crate) mod cuda;
 mod shown;
 
-use lightmesh_layout::constants::{FILTER_LEVELS, LEVEL_SHIFT, MOST_OF_LEVEL};
+use lightmesh_layout::constants::{FILTER_LEVELS, LEVEL_SHIFT, MAX_OF_LEVEL};
 
-use crate::job::Sampling;
-use crate::shadow::Aim;
+use crate::render_context::Sampling;
+use crate::shadow::ShadowTarget;
 
 /// Where shadow rays end at each level of surface points, the first of which takes all samples.
-fn levels(aim: &Aim) -> Vec<Aim> {
-    let Aim::Extent(all) = *aim else { return vec![*aim] };
+fn levels(target: &ShadowTarget) -> Vec<ShadowTarget> {
+    let ShadowTarget::Area(all) = *target else { return vec![*target] };
     let samples = |level: u32| match level {
         0 => all.samples,
-        _ => (all.samples >> (LEVEL_SHIFT * level)).clamp(1, MOST_OF_LEVEL),
+        _ => (all.samples >> (LEVEL_SHIFT * level)).clamp(1, MAX_OF_LEVEL),
     };
-    (0..FILTER_LEVELS).map(|level| Aim::Extent(Sampling { samples: samples(level), ..all })).collect()
+    (0..FILTER_LEVELS).map(|level| ShadowTarget::Area(Sampling { samples: samples(level), ..all })).collect()
 }

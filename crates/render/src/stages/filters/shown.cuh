@@ -2,7 +2,7 @@
 #pragma once
 
 #include "shading/falloff.cuh"
-#include "shadow/sight.cuh"
+#include "shadow/projected_light.cuh"
 
 // Whether highlights are all that surfaces of this material show of lights.
 DEVICE bool has_mere_highlights(const Material &material) {
@@ -39,5 +39,5 @@ DEVICE bool may_show(const Filters &args, unsigned ray, const SurfacePoint &poin
     for (float power = 2.0f; power <= material.shininess; power *= 2.0f)
         highlight *= highlight;
     const float strength = falloff(light, sqrtf(square) - radius) * max_element(light.intensity);
-    return max_element(weight_of(rays, ray)) * (highlight * strength) > LEAST_SHOWN;
+    return max_element(weight_of(rays, ray)) * (highlight * strength) > MIN_SHOWN;
 }

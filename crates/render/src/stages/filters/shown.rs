@@ -3,16 +3,16 @@
 //!
 //! The light is within a cone around the way to its centre, of the half angle β with sin β = radius / distance. If the mirrored view makes the angle
 //! α > β with that way, then the highlight is at most cosⁿ(α − β), n being the largest power of two up to the exponent, times what a light of this
-//! strength would be at the nearest point. That times the share of the pixel must reach [`LEAST_SHOWN`].
+//! strength would be at the nearest point. That times the share of the pixel must reach [`MIN_SHOWN`].
 
-use lightmesh_layout::constants::LEAST_SHOWN;
+use lightmesh_layout::constants::MIN_SHOWN;
 use lightmesh_scene::{Light, LightKind, Material};
 
 use crate::data::wave::HostWave;
 use crate::prepared::PreparedScene;
 use crate::sampling::light_center;
 use crate::shading::falloff;
-use crate::shadow::sight::spread;
+use crate::shadow::projected_light::spread;
 use crate::shadow::size;
 use crate::surface::{SurfacePoint, shading_normal};
 
@@ -36,7 +36,7 @@ pub(super) fn may_show(
     let normal = shading_normal(&geometry.mesh, hit, point.normal);
     let view = -wave.rays.rays[ray].direction;
     let mirrored = 2.0 * normal.dot(view) * normal - view;
-    let reach = wave.scene.geometry.reach(point.origin);
+    let reach = wave.scene.geometry.sun_distance(point.origin);
     let way = light_center(light, point.origin, reach) - point.origin;
     let largest = size(light, 1.0).max(spread(light));
     let radius = if matches!(light.kind, LightKind::Directional { .. }) { reach * largest } else { largest };
@@ -57,7 +57,7 @@ pub(super) fn may_show(
         (highlight, power) = (highlight * highlight, 2.0 * power);
     }
     let strength = falloff(light, square.sqrt() - radius) * light.intensity.max_element();
-    wave.rays.weight(ray).max_element() * (highlight * strength) > LEAST_SHOWN
+    wave.rays.weight(ray).max_element() * (highlight * strength) > MIN_SHOWN
 }
 
 /// Whether highlights are all that surfaces of this material show of lights.

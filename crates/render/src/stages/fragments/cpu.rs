@@ -14,7 +14,7 @@ use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::data::wave::HostWave;
 use crate::sampling::Pattern;
-use crate::stages::pixel_samples::alike::{Facet, lets_through, mirrored_samples};
+use crate::stages::pixel_samples::same_surface::{Facet, lets_through, mirrored_samples};
 
 /// Number of pixels per task.
 const BATCH: usize = 1024;
@@ -42,7 +42,7 @@ pub(crate) fn fragments(
         for &pixel in pixels.iter().filter(|pixel| kept.contains(pixel)) {
             Pixel { wave, samples, all, pixel }.add_fragments(&mut lists);
         }
-        wave.job.piece(pixels.len(), || ());
+        wave.context.piece(pixels.len(), || ());
         lists
     };
     let parts: Vec<[(RayList, Vec<Hit>); 3]> = wave.rays.pixels.par_chunks(BATCH).map(of_batch).collect();
@@ -59,7 +59,7 @@ pub(crate) fn fragments(
         }
     }
     let found = lists[..2].iter().flat_map(|(_, hits)| hits).filter(|hit| hit.is_some()).count();
-    Tally::add(&wave.job.tally.surface_points, found as u64);
+    Tally::add(&wave.context.tally.surface_points, found as u64);
     if !all.apart {
         let sampled = Sampled { hits: samples.hits.clone(), first: samples.first, count: samples.numbers.len() };
         lists.iter_mut().for_each(|(rays, _)| rays.sampled = Some(sampled.clone()));

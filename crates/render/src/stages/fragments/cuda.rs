@@ -32,7 +32,7 @@ pub(crate) fn fragments<R: Runtime>(
     let blocks = rays.blocks(BLOCK_SIDE);
     let launch = |kernel: Kernel, progress: usize, record: PixelSamples| {
         let work = Work { units: blocks, cost: u64::from(record.samples[1]), first: FIRST, progress: progress as u64 };
-        cuda.in_pieces(wave.job, kernel, work, |piece| {
+        cuda.in_pieces(wave.context, kernel, work, |piece| {
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
         })
     };

@@ -6,7 +6,7 @@
 #include "cuda/prelude.cuh"
 
 #include "cuda/tally.cuh"
-#include "stages/pixel_samples/alike.cuh"
+#include "stages/pixel_samples/same_surface.cuh"
 
 // The columns or rows around a place, and it.
 struct Around {

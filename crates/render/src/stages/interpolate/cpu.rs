@@ -10,7 +10,7 @@ use lightmesh_trace::simd::dispatch;
 use rayon::prelude::*;
 
 use crate::counters::Tally;
-use crate::data::lit::{Lit, LitBy};
+use crate::data::light_point_visibility::{LightPointVisibility, VisibilityOfLight};
 use crate::data::masks::population;
 use crate::data::visibility::Visibility;
 use crate::data::wave::{HostSeen, HostWave};
@@ -42,9 +42,9 @@ impl Interpolation<'_> {
         let parts = parts_of(&mut shares, runs.iter().map(|run| cells.slots_of(run).len() * lights));
         let fallbacks = runs.par_iter().zip(parts).map(|(run, shares)| {
             let fill = || dispatch!(level, simd => self.fill(simd, &windows, run.clone(), shares));
-            self.wave.job.piece(cells.slots_of(run).len(), fill)
+            self.wave.context.piece(cells.slots_of(run).len(), fill)
         });
-        Tally::add(&self.wave.job.tally.fallbacks, fallbacks.sum());
+        Tally::add(&self.wave.context.tally.fallbacks, fallbacks.sum());
 
         // From the order of cells back to the order of rays.
         let mut slots = vec![None; self.wave.hits.len()];
@@ -79,7 +79,7 @@ impl Interpolation<'_> {
             for slot in cells.slots(group) {
                 let ray = cells.members()[slot] as usize;
                 let point = wave.surface_point(ray);
-                let reach = wave.scene.geometry.reach(point.origin);
+                let reach = wave.scene.geometry.sun_distance(point.origin);
                 let mask = masks.mask(slot);
                 let mut means = Means::new(&mut values, &points, mesh, mask, point.position);
                 let mut fell_back = lights.is_empty() && means.used == 0;
@@ -114,7 +114,7 @@ fn parts_of(mut rest: &mut [f32], lengths: impl Iterator<Item = usize>) -> Vec<&
 /// What the template points of one cell see, in the template's order.
 struct CellValues<'a> {
     points: &'a UsedPoints,
-    lit: &'a Lit,
+    lit: &'a LightPointVisibility,
     windows: &'a Windows,
     bricks: Vec<Option<usize>>,
     lights: Vec<LightValues>,
@@ -135,9 +135,9 @@ struct LightValues {
 impl<'a> CellValues<'a> {
     fn new(work: &HostSeen<'a>, windows: &'a Windows) -> CellValues<'a> {
         let words = work.mesh.template.words();
-        let values = |lit: &LitBy| match lit {
-            LitBy::Bits(_) => LightValues { full: Vec::new(), some: vec![0; words], share: Vec::new() },
-            LitBy::Share { .. } => {
+        let values = |lit: &VisibilityOfLight| match lit {
+            VisibilityOfLight::Bits(_) => LightValues { full: Vec::new(), some: vec![0; words], share: Vec::new() },
+            VisibilityOfLight::Share { .. } => {
                 LightValues { full: vec![0; words], some: vec![0; words], share: vec![0.0; 32 * words] }
             }
         };
@@ -159,8 +159,8 @@ impl<'a> CellValues<'a> {
         }
         for (values, lit) in self.lights.iter_mut().zip(&self.lit.lights) {
             match lit {
-                LitBy::Bits(words) => values.fetch_bits(window.spans, &self.bricks, words),
-                LitBy::Share { seen, samples } => {
+                VisibilityOfLight::Bits(words) => values.fetch_bits(window.spans, &self.bricks, words),
+                VisibilityOfLight::Share { seen, samples } => {
                     values.fetch_shares(window.spans, &self.bricks, self.points, seen, *samples);
                 }
             }

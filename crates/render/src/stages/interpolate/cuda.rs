@@ -1,13 +1,13 @@
 //! Formula (3) on a CUDA device: one warp per item, then long tests where no light point counts.
 
 use lightmesh_kernels::Runtime;
-use lightmesh_layout::constants::{ITEM_WARPS, MOST_LIGHTS};
+use lightmesh_layout::constants::{ITEM_WARPS, MAX_LIGHTS};
 use lightmesh_layout::stages::Interpolate;
 
 use crate::data::wave::Seen;
 use crate::error::RenderError;
 use crate::gpu::cells::DeviceCells;
-use crate::gpu::lit::DeviceLit;
+use crate::gpu::light_point_visibility::DeviceLightPointVisibility;
 use crate::gpu::masks::DeviceMasks;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
@@ -17,7 +17,8 @@ use crate::gpu::{
 use crate::light_mesh::window_bricks;
 
 /// The inputs of formula (3).
-pub(crate) type DeviceSeen<'a, R> = Seen<'a, DeviceCells<R>, DeviceMasks<R>, DevicePoints<R>, DeviceLit<R>>;
+pub(crate) type DeviceSeen<'a, R> =
+    Seen<'a, DeviceCells<R>, DeviceMasks<R>, DevicePoints<R>, DeviceLightPointVisibility<R>>;
 
 const INTERPOLATE: PerModule = per_module!("interpolate", "interpolate");
 const FALLBACK: PerStructure = per_structure!("interpolate", "fallback");
@@ -51,7 +52,7 @@ pub(crate) fn interpolate<R: Runtime>(
         used: used.output(),
         fallback_rays: fallback_rays.output(),
         fallback_count: fallback_count.output(),
-        sampling: sampling(wave.job.sampling.of_light_points()),
+        sampling: sampling(wave.context.sampling.of_light_points()),
         tally: cuda.tally()?,
         first: 0,
         count: 0,
@@ -61,9 +62,9 @@ pub(crate) fn interpolate<R: Runtime>(
     let work = Work { units: cells.count as u64, cost, first: FIRST_ITEMS, progress: cells.count as u64 };
     let interpolate = INTERPOLATE.of(wave.scene);
     cuda.bring_lines(interpolate.module, mesh)?;
-    cuda.in_pieces(wave.job, interpolate, work, |piece| {
+    cuda.in_pieces(wave.context, interpolate, work, |piece| {
         let count = piece.end - piece.start;
-        let words = window_bricks(mesh.template.reach()) + MOST_LIGHTS * mesh.template.words() as u32;
+        let words = window_bricks(mesh.template.reach()) + MAX_LIGHTS * mesh.template.words() as u32;
         cuda.launch(
             interpolate,
             warps_for(&piece, ITEM_WARPS, words),
@@ -73,7 +74,7 @@ pub(crate) fn interpolate<R: Runtime>(
     // 2. Surface points without light points take their own long tests.
     let kernel = FALLBACK.of(wave.scene);
     let blocks = (wave.rays.len() as u64).div_ceil(u64::from(BLOCK));
-    cuda.in_pieces(wave.job, kernel, Work { units: blocks, cost, first: FIRST_BLOCKS, progress: 0 }, |piece| {
+    cuda.in_pieces(wave.context, kernel, Work { units: blocks, cost, first: FIRST_BLOCKS, progress: 0 }, |piece| {
         let count = piece.end - piece.start;
         cuda.launch(kernel, blocks_for(&piece, BLOCK), &Interpolate { first: piece.start, count, ..record })
     })?;

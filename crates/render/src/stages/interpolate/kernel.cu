@@ -31,7 +31,7 @@ struct ItemPoints {
 };
 
 // The share of an area light that a light point sees.
-DEVICE float light_point_share(const Interpolate &args, const LitBy &lit, const ItemPoints &points, IVec3 point) {
+DEVICE float light_point_share(const Interpolate &args, const VisibilityOfLight &lit, const ItemPoints &points, IVec3 point) {
     const unsigned slot = points.slots[window_place(points.window, point)];
     const unsigned bit = point_bit(point);
     const unsigned long long used = args.points.used[slot];
@@ -52,7 +52,7 @@ struct LitLanes {
     unsigned any, some, not_full;
 };
 
-DEVICE LitLanes lit_lanes(const Interpolate &args, const LitBy &lit, const ItemPoints &points) {
+DEVICE LitLanes lit_lanes(const Interpolate &args, const VisibilityOfLight &lit, const ItemPoints &points) {
     LitLanes lanes = {0, 0, 0};
     for (unsigned k = lane_of_thread(); k < args.mesh.points; k += WARP) {
         const unsigned seen = points.seen[k];
@@ -72,7 +72,7 @@ DEVICE LitLanes lit_lanes(const Interpolate &args, const LitBy &lit, const ItemP
 }
 
 // Formula (3) without χ for the lanes in `mixed`; negative if all weights vanish.
-DEVICE float weighted_mean(const Interpolate &args, const LitBy &lit, const ItemPoints &points, const Vec3 &position,
+DEVICE float weighted_mean(const Interpolate &args, const VisibilityOfLight &lit, const ItemPoints &points, const Vec3 &position,
                            unsigned mixed) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
@@ -215,7 +215,7 @@ DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &point
 
 // The share of one area light. Returns whether the lane falls back.
 DEVICE bool light_with_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned light) {
-    const LitBy lit = args.lit[light];
+    const VisibilityOfLight lit = args.lit[light];
     const unsigned index = lane_of_thread();
     const float reach = scene_reach(args.scene, lane.point.origin);
     const float most = lane.alive ? above_horizon(lane.point, args.scene.lights[light], reach) : 0.0f;
@@ -260,7 +260,7 @@ KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
     points.cell = point_of(item.cell);
     points.window = window_around(mesh, points.cell);
     const int bricks = window_size(points.window);
-    points.slots = shared + threadIdx.x / WARP * (bricks + MOST_LIGHTS * mesh.words);
+    points.slots = shared + threadIdx.x / WARP * (bricks + MAX_LIGHTS * mesh.words);
     unsigned *lit_words = points.slots + bricks;
     points.seen = args.masks + index * 32 * mesh.words;
     for (int place = lane; place < bricks; place += (int)WARP)
@@ -273,8 +273,8 @@ KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
         // Most scenes have one light.
         fell_back |= args.scene.light_count == 1
                          ? lights_without_size<1>(args, points, own, first, lit_words, used)
-                         : lights_without_size<MOST_LIGHTS>(args, points, own, first, lit_words, used);
-        first += MOST_LIGHTS;
+                         : lights_without_size<MAX_LIGHTS>(args, points, own, first, lit_words, used);
+        first += MAX_LIGHTS;
     } while (first < args.scene.light_count);
     for (unsigned light = 0; light < args.scene.light_count; light++)
         if (args.lit[light].seen != nullptr)

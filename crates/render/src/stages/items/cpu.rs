@@ -16,7 +16,7 @@ pub(crate) fn items(wave: &HostWave) -> Items {
         .map(|tile| {
             let first = tile * TILE as usize;
             let count = (rays - first).min(TILE as usize);
-            wave.job.piece(count, || items_of_tile(wave, first, count))
+            wave.context.piece(count, || items_of_tile(wave, first, count))
         })
         .collect();
     let mut items = Items::default();

@@ -8,13 +8,13 @@ use rayon::prelude::*;
 use crate::counters::Tally;
 use crate::data::cells::CellGroups;
 use crate::data::masks::Masks;
-use crate::job::Job;
 use crate::light_mesh::{BrickKey, BrickMap, LightMesh, UsedPoints, Windows, point_of};
+use crate::render_context::RenderContext;
 
 /// Number of surface points per task.
 const RUN: usize = 8192;
 
-pub(crate) fn light_points(job: &Job, cells: &CellGroups, masks: &Masks, mesh: &LightMesh) -> UsedPoints {
+pub(crate) fn light_points(context: &RenderContext, cells: &CellGroups, masks: &Masks, mesh: &LightMesh) -> UsedPoints {
     let runs = cells.runs(RUN);
     let windows = Windows::new(&mesh.template);
 
@@ -36,7 +36,7 @@ pub(crate) fn light_points(job: &Job, cells: &CellGroups, masks: &Masks, mesh: &
     // 2. The used points in each. The order of marking does not matter to an "or".
     let used: Vec<AtomicU64> = bricks.keys().iter().map(|_| AtomicU64::new(0)).collect();
     runs.par_iter().for_each(|run| {
-        job.piece(cells.slots_of(run).len(), || {
+        context.piece(cells.slots_of(run).len(), || {
             Marker::new(cells, masks, &windows).each_brick(run.clone(), |key, points| {
                 if let Some(brick) = bricks.find(key) {
                     used[brick].fetch_or(points, Ordering::Relaxed);
@@ -47,7 +47,7 @@ pub(crate) fn light_points(job: &Job, cells: &CellGroups, masks: &Masks, mesh: &
 
     // 3. Ranks.
     let points = UsedPoints::new(bricks, used.into_iter().map(AtomicU64::into_inner).collect());
-    Tally::add(&job.tally.light_points, points.count() as u64);
+    Tally::add(&context.tally.light_points, points.count() as u64);
     points
 }
 

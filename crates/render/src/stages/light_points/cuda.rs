@@ -17,8 +17,8 @@ use crate::gpu::cells::DeviceCells;
 use crate::gpu::masks::DeviceMasks;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::{BLOCK, Cuda, Work, blocks_for, warps_for};
-use crate::job::Job;
 use crate::light_mesh::{LightMesh, window_bricks};
+use crate::render_context::RenderContext;
 
 const MARK_ITEMS: Kernel = Kernel { module: "light_points", name: "mark_items" };
 const INSERT: Kernel = Kernel { module: "light_points", name: "insert_bricks" };
@@ -29,11 +29,11 @@ const LIST: Kernel = Kernel { module: "light_points", name: "list_points" };
 /// Number of items in the first launch.
 const FIRST: u64 = 4096;
 /// Slots of the smallest table.
-const LEAST_CAPACITY: usize = 1024;
+const MIN_CAPACITY: usize = 1024;
 
 pub(crate) fn light_points<R: Runtime>(
     cuda: &Cuda<R>,
-    job: &Job,
+    context: &RenderContext,
     cells: &DeviceCells<R>,
     masks: &DeviceMasks<R>,
     mesh: &LightMesh,
@@ -50,19 +50,19 @@ pub(crate) fn light_points<R: Runtime>(
         ..LightPoints::zeroed()
     };
     let work = Work { units: cells.count as u64, cost: 1, first: FIRST, progress: cells.count as u64 };
-    cuda.in_pieces(job, MARK_ITEMS, work, |piece| {
+    cuda.in_pieces(context, MARK_ITEMS, work, |piece| {
         let item_count = piece.end - piece.start;
         let launch = warps_for(&piece, ITEM_WARPS, 2 * bricks_of_item);
         cuda.launch(MARK_ITEMS, launch, &LightPoints { first_item: piece.start, item_count, ..record })
     })?;
     // 2. The bricks that hold a used point, in a table that is at most half full.
-    let mut capacity = cells.count.next_power_of_two().max(LEAST_CAPACITY);
+    let mut capacity = cells.count.next_power_of_two().max(MIN_CAPACITY);
     let (keys, record) = loop {
         let keys = cuda.pool().zeros("table of bricks", capacity)?;
         let bricks = cuda.pool().zeros("number of bricks", 1)?;
         let table = BrickTable { keys: keys.output(), capacity: capacity as u32, spare: 0 };
         let record = LightPoints { table, bricks: bricks.output(), ..record };
-        each_item(cuda, job, INSERT, &record)?;
+        each_item(cuda, context, INSERT, &record)?;
         let mut count = [0u32];
         bricks.read_into(0, &mut count)?;
         if count[0] as usize <= capacity / 2 {
@@ -74,10 +74,10 @@ pub(crate) fn light_points<R: Runtime>(
     let used = cuda.pool().zeros("used light points", capacity)?;
     let slots = cuda.pool().room("bricks around items", marks.len())?;
     let record = LightPoints { used: used.output(), slots: slots.output(), ..record };
-    each_item(cuda, job, MARK, &record)?;
+    each_item(cuda, context, MARK, &record)?;
     // 4. and 5. Ranks, and the list.
     let points = listed(cuda, (Arc::new(keys), Arc::new(slots)), used)?;
-    Tally::add(&job.tally.light_points, points.count as u64);
+    Tally::add(&context.tally.light_points, points.count as u64);
     Ok(points)
 }
 
@@ -114,9 +114,14 @@ fn listed<R: Runtime>(
 }
 
 /// Launches a kernel with one thread per brick of an item's window, over all items.
-fn each_item<R: Runtime>(cuda: &Cuda<R>, job: &Job, kernel: Kernel, record: &LightPoints) -> Result<(), RenderError> {
+fn each_item<R: Runtime>(
+    cuda: &Cuda<R>,
+    context: &RenderContext,
+    kernel: Kernel,
+    record: &LightPoints,
+) -> Result<(), RenderError> {
     let work = Work { units: record.item_count, cost: 1, first: FIRST, progress: 0 };
-    cuda.in_pieces(job, kernel, work, |piece| {
+    cuda.in_pieces(context, kernel, work, |piece| {
         let item_count = piece.end - piece.start;
         let bricks = item_count * u64::from(window_bricks(record.mesh.reach));
         let launch = blocks_for(&(0..bricks.div_ceil(u64::from(BLOCK))), BLOCK);

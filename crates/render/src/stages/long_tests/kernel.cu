@@ -33,7 +33,7 @@ DEVICE void long_tests(const LongTests &args, const Structure &structure) {
     const Light &light = args.scene.lights[args.light];
     const unsigned long long brick = args.points.table.keys[slot] - 1;
     const unsigned seen = rays_that_arrive(args, structure, point_of(brick << POINT_BITS | bit));
-    const LitBy lit = args.lit;
+    const VisibilityOfLight lit = args.lit;
     if (has_size(light))
         lit.seen[rank] = (unsigned short)((args.first_sample == 0 ? 0 : lit.seen[rank]) + seen);
     else if (seen > 0)

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use lightmesh_layout::constants::{MOST_MERGED, WARP};
+use lightmesh_layout::constants::{MAX_MERGED, WARP};
 use lightmesh_trace::accel::Hit;
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
 use crate::shading::seen_lights::SeenLights;
-use crate::stages::pixel_samples::alike::{Facet, lets_through, most_mirrored};
+use crate::stages::pixel_samples::same_surface::{Facet, lets_through, most_mirrored};
 
 /// Number of rays per task, without the rest of the last pixel.
 const BATCH: usize = 1024;
@@ -94,7 +94,7 @@ fn part_of(wave: &HostWave, seen: &SeenLights, first: usize, run: &Range<usize>,
         false if list.mirrors(first) => most_mirrored(scene, hit),
         false => 0.0,
     };
-    if varying * weight_of(list, first, part).max_element() <= MOST_MERGED { part } else { 1 }
+    if varying * weight_of(list, first, part).max_element() <= MAX_MERGED { part } else { 1 }
 }
 
 /// The sum of the weights of the rays of a part.

@@ -19,7 +19,7 @@ pub(crate) fn merged_rays<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
 ) -> Result<(DeviceRays<R>, DeviceHits<R>), RenderError> {
-    wave.job.check()?;
+    wave.context.check()?;
     let (pool, rays) = (cuda.pool(), wave.rays);
     let blocks = rays.record.count.div_ceil(BLOCK);
     let launch = blocks_for(&(0..u64::from(blocks)), BLOCK);

@@ -7,7 +7,7 @@
 
 #include "cuda/warp.cuh"
 #include "shading/seen_lights.cuh"
-#include "stages/pixel_samples/alike.cuh"
+#include "stages/pixel_samples/same_surface.cuh"
 
 // What ray number `ray` sees.
 DEVICE Facet facet_of_ray(const MergedRays &args, unsigned ray, const Hit &hit) {
@@ -51,7 +51,7 @@ DEVICE unsigned part_of(const MergedRays &args, unsigned first, unsigned start, 
             part |= 1u << (other - first);
     }
     const float varying = blurred ? 1.0f : mirrors(args.rays, first) ? most_mirrored(args.scene, hit) : 0.0f;
-    return varying * max_element(weight_of_part(args, first, part)) <= MOST_MERGED ? part : 1;
+    return varying * max_element(weight_of_part(args, first, part)) <= MAX_MERGED ? part : 1;
 }
 
 KERNEL(merge_mirrored, MergedRays, BLOCK, 4) {

@@ -3,7 +3,7 @@
 //! In: mirrored rays and hits; the rays of a pixel follow each other. Out: the rays that are left, in their order, and their hits.
 //!
 //! 1. The first ray of a pixel that is left takes all that lie on one surface with it, as samples of a pixel do
-//!    ([`alike`](super::pixel_samples::alike)), unless too much of what this surface mirrors would reach the pixel by a single ray.
+//!    ([`same_surface`](super::pixel_samples::same_surface)), unless too much of what this surface mirrors would reach the pixel by a single ray.
 //! 2. Its weight is the sum of theirs, and its cone covers what all of them see of a texture.
 //!
 //! Rays from rough mirrors blur what they show: of these it takes all that meet the same material with a normal within 26 degrees, unless too much

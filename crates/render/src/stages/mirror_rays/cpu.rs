@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{
-    DIRECTION_SHIFT, FADE_SHIFT, LEAST_ONWARD, LEAST_THIN, LOBE_PATTERN, LOBE_TILE, MOST_DIRECTIONS, MOST_THROUGHS,
+    DIRECTION_SHIFT, FADE_SHIFT, LOBE_PATTERN, LOBE_TILE, MAX_DIRECTIONS, MAX_THROUGHS, MIN_ONWARD, MIN_THIN,
     THROUGHS_SHIFT, UPPER_BITS, UPPER_NIBBLES, UPPER_PAIRS,
 };
 use lightmesh_trace::accel::Ray;
@@ -47,12 +47,12 @@ fn points(wave: &HostWave, ray: usize, count: u32) -> impl Fn(u32) -> [f32; 2] {
     let [x, y] = list.window.place(list.pixels[ray]);
     let tile = ((y / LOBE_TILE) << 16) | (x / LOBE_TILE);
     let key = u64::from(list.depth) << 32 | u64::from(tile);
-    let pattern = Pattern::new(wave.job.sampling.seed, key, LOBE_PATTERN as usize);
+    let pattern = Pattern::new(wave.context.sampling.seed, key, LOBE_PATTERN as usize);
     let place = along_curve(x % LOBE_TILE, y % LOBE_TILE);
 
     // 2. Those of a pixel follow each other: of its first sample, or of the only one, and so on.
-    let samples = if list.sample(ray) == 0 { 1 } else { wave.job.pixel_samples.next_power_of_two() };
-    let directions = if list.is_mirrored(ray) { MOST_DIRECTIONS } else { count };
+    let samples = if list.sample(ray) == 0 { 1 } else { wave.context.pixel_samples.next_power_of_two() };
+    let directions = if list.is_mirrored(ray) { MAX_DIRECTIONS } else { count };
     // Of very many samples it does not matter where the numbers begin anew.
     let first = place.wrapping_mul(samples * directions).wrapping_add(list.number_in_pixel(ray) * count);
     move |number| {
@@ -80,7 +80,7 @@ fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
     let mut next = beyond(list);
     let mut thinning = Thinning::new(list);
     let thins = wave.scene.lets_through();
-    let least = if thins { LEAST_THIN } else { LEAST_ONWARD };
+    let least = if thins { MIN_THIN } else { MIN_ONWARD };
     let mut thinned = |index: usize, weight: Vec3| if thins { thinning.weight(index, weight) } else { Some(weight) };
     let mut add = |index: usize, ray: Ray, cone: Option<Cone>, weight: Vec3, sample: u32| {
         next.rays.push(ray);
@@ -98,7 +98,7 @@ fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
         // 1. Through the surface.
         let weight = reaches * surface.coefficients.transmittance;
         if weight.max_element() >= least
-            && throughs < MOST_THROUGHS
+            && throughs < MAX_THROUGHS
             && let Some(weight) = thinned(index, weight)
         {
             let (origin, direction) = surface.onward();

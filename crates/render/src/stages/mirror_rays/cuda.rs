@@ -15,7 +15,7 @@ const COUNT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_count" 
 const EMIT: Kernel = Kernel { module: "mirror_rays", name: "mirror_rays_emit" };
 
 pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> Result<DeviceRays<R>, RenderError> {
-    wave.job.check()?;
+    wave.context.check()?;
     let rays = wave.rays;
     let blocks = rays.record.count.div_ceil(BLOCK);
     let counts = cuda.pool().room("counts of mirror rays", blocks as usize + 1)?;
@@ -31,8 +31,8 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
         hits: wave.hits.hits.input(),
         counts: counts.output(),
         per_ray: per_ray.output(),
-        seed: wave.job.sampling.seed,
-        pixel_samples: u64::from(wave.job.pixel_samples.next_power_of_two()),
+        seed: wave.context.sampling.seed,
+        pixel_samples: u64::from(wave.context.pixel_samples.next_power_of_two()),
         thin: thin.as_ref().map_or(Out::NULL, Buffer::output),
         ..MirrorRays::zeroed()
     };

@@ -26,14 +26,14 @@ DEVICE Shares all_shares_of(const MirrorRays &args, unsigned ray) {
     const Vec3 weight = in_front(args.scene, args.rays, args.hits, ray, 1.0f).left * weight_of(args.rays, ray);
     const Vec3 through = weight * material->transmittance, mirrored = weight * material->mirrored;
     const unsigned throughs = throughs_of(args.rays, ray);
-    const float least = args.thin != nullptr ? LEAST_THIN : LEAST_ONWARD;
-    const bool goes = max_element(through) >= least && throughs < MOST_THROUGHS;
+    const float least = args.thin != nullptr ? MIN_THIN : MIN_ONWARD;
+    const bool goes = max_element(through) >= least && throughs < MAX_THROUGHS;
     const bool returns = max_element(mirrored) >= least && mirrors(args.rays, ray);
     return Shares{goes ? through : none.through, returns ? mirrored : none.mirrored};
 }
 
 // T: rays of a larger share always go on.
-DEVICE float least_thick(const Rays &rays) { return rays.depth < DEEP ? LEAST_THICK : LEAST_THICK_DEEP; }
+DEVICE float least_thick(const Rays &rays) { return rays.depth < DEEP ? MIN_THICK : MIN_THICK_DEEP; }
 
 // The share of a thin ray of this weight, in units of T 2^-16; 0 of others.
 DEVICE unsigned part_of(Vec3 weight, float least) {
@@ -86,7 +86,7 @@ DEVICE Points points_of(const MirrorRays &args, unsigned ray, unsigned count) {
 
     // 2. Those of a pixel follow each other: of its first sample, or of the only one, and so on.
     const unsigned samples = sample_of(args.rays, ray) == 0 ? 1 : (unsigned)args.pixel_samples;
-    const unsigned directions = is_mirrored(args.rays, ray) ? MOST_DIRECTIONS : count;
+    const unsigned directions = is_mirrored(args.rays, ray) ? MAX_DIRECTIONS : count;
     return Points{pattern_of(args.seed, (unsigned long long)args.rays.depth << 32 | tile, LOBE_PATTERN),
                   place * samples * directions + number_in_pixel(args.rays, ray) * count};
 }
@@ -127,7 +127,7 @@ DEVICE Drawn mirror_ray(const MirrorRays &args, unsigned ray, const Mirror &mirr
     const Vec3 point = pattern_point(mirror.points.pattern, mirror.points.first + number);
     Drawn one = drawn(mirror.surface, point.x, point.y);
     one.share = mirror.reaches * one.share / (float)mirror.count;
-    if (max_element(one.share) < (args.thin != nullptr ? LEAST_THIN : LEAST_ONWARD))
+    if (max_element(one.share) < (args.thin != nullptr ? MIN_THIN : MIN_ONWARD))
         one.share = splat(0.0f);
     return one;
 }

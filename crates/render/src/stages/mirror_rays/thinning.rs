@@ -1,7 +1,7 @@
 //! Which of many faint rays of a pixel go on.
 //!
 //! Glass that mirrors and lets through makes two rays of each, and panes behind each other soon make hundreds of which little reaches the pixel. Rays
-//! of a share w of at least T, those of all channels counting as the largest, always go on: [`LEAST_THICK`], or [`LEAST_THICK_DEEP`] of rays that met
+//! of a share w of at least T, those of all channels counting as the largest, always go on: [`MIN_THICK`], or [`MIN_THICK_DEEP`] of rays that met
 //! [`DEEP`] surfaces, which are many. Of the others of a pixel at one depth
 //! those go on, in their order, where
 //!
@@ -18,9 +18,7 @@
 //! Twin: `kernel.cu`. Weights are whole numbers of T 2⁻¹⁶, so that sums are the same in any order.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{
-    DEEP, LEAST_THICK, LEAST_THICK_DEEP, THIN_ACROSS, THIN_BITS, THIN_DEEPER, THIN_DOWN,
-};
+use lightmesh_layout::constants::{DEEP, MIN_THICK, MIN_THICK_DEEP, THIN_ACROSS, THIN_BITS, THIN_DEEPER, THIN_DOWN};
 
 use crate::data::rays::RayList;
 
@@ -38,7 +36,7 @@ pub(super) struct Thinning<'a> {
 impl<'a> Thinning<'a> {
     /// For rays that go on from those of `list`.
     pub(super) fn new(list: &'a RayList) -> Thinning<'a> {
-        let least = if list.depth < DEEP { LEAST_THICK } else { LEAST_THICK_DEEP };
+        let least = if list.depth < DEEP { MIN_THICK } else { MIN_THICK_DEEP };
         Thinning { list, least, pixel: None, sum: 0 }
     }
 

@@ -2,7 +2,7 @@
 // derived.
 #pragma once
 
-#include "accel/sieve.cuh"
+#include "accel/region_filter.cuh"
 #include "shadow/occlusion.cuh"
 
 // The boxes of an item and an emitter.
@@ -21,11 +21,11 @@ struct Shaft {
 
 // Half the edges of a box, and a little more.
 DEVICE Vec3 grown_half(const Bounds &bounds) {
-    return 0.5f * GROWN * (bounds.high - bounds.low) + 2.0f * UNIT_ROUNDOFF * abs(bounds.low + bounds.high);
+    return 0.5f * ENLARGEMENT * (bounds.high - bounds.low) + 2.0f * UNIT_ROUNDOFF * abs(bounds.low + bounds.high);
 }
 
 // The length of a vector, rounded up.
-DEVICE float length_bound(const Vec3 &v) { return GROWN * rough_root(fused_dot(v, v)); }
+DEVICE float length_bound(const Vec3 &v) { return ENLARGEMENT * rough_root(fused_dot(v, v)); }
 
 DEVICE Shaft shaft_of(const Bounds &origins, const Bounds &emitter, float radius, float body) {
     Shaft shaft;
@@ -33,7 +33,7 @@ DEVICE Shaft shaft_of(const Bounds &origins, const Bounds &emitter, float radius
     shaft.half = grown_half(origins);
     shaft.emitter = 0.5f * (emitter.low + emitter.high) - shaft.middle;
     shaft.emitter_half = grown_half(emitter);
-    shaft.radius = GROWN * radius;
+    shaft.radius = ENLARGEMENT * radius;
     shaft.body = body * body;
     shaft.reach = element_sum(shaft.half);
     shaft.far = element_sum(abs(shaft.emitter)) + element_sum(shaft.emitter_half);
@@ -50,9 +50,9 @@ DEVICE float to_samples(const Shaft &shaft, const Vec3 &v) {
 }
 
 // Whether a shaft may meet the bounding box of a triangle.
-DEVICE bool in_shaft(const ShaftForm &shaft, const Corners &corners) {
+DEVICE bool in_shaft(const ShaftShape &shaft, const Corners &corners) {
     const Bounds bounds = bounds_of(corners);
-    return form_meets(shaft, bounds.low, bounds.high);
+    return shape_meets(shaft, bounds.low, bounds.high);
 }
 
 // Whether a corner of a triangle may lie above the tangent plane of any of the points, which are not farther than `extent` from the

@@ -15,7 +15,8 @@
 //!
 //! # What is rounded
 //!
-//! Here as in [`Sights`](crate::shadow::occlusion::Sights), whose decisions the bounds must cover, a function is off by less than 16 ε times
+//! Here as in [`ProjectedLights`](crate::shadow::occlusion::ProjectedLights),
+//! whose decisions the bounds must cover, a function is off by less than 16 ε times
 //! the product of the three lengths in it; 64 ε bound both.
 //!
 //! The height of a corner above the plane through a point, along n, is off by 4.1 ε Σ |nᵢ| Dᵢ, D being its way from where heights are
@@ -25,9 +26,9 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, mask32x8};
 use glam::Vec3;
-use lightmesh_layout::constants::{GROWN, REGION_ROUNDING, UNIT_ROUNDOFF};
+use lightmesh_layout::constants::{ENLARGEMENT, REGION_ROUNDING, UNIT_ROUNDOFF};
 use lightmesh_scene::Bounds;
-use lightmesh_trace::accel::{PIECE, TangentPlanes, Triangle};
+use lightmesh_trace::accel::{CHUNK, TangentPlanes, Triangle};
 use lightmesh_trace::simd::{Axes, cross, difference, dot, fused_dot, load, scaled, splat, sum};
 
 /// The boxes of an item and an emitter.
@@ -59,13 +60,13 @@ pub(super) struct Chosen {
 impl Shaft {
     pub(super) fn new(origins: &Bounds, emitter: &Bounds, (radius, body): (f32, f32)) -> Shaft {
         let middle = origins.center();
-        let grown = |bounds: &Bounds| 0.5 * GROWN * bounds.extent() + 4.0 * UNIT_ROUNDOFF * bounds.center().abs();
+        let grown = |bounds: &Bounds| 0.5 * ENLARGEMENT * bounds.extent() + 4.0 * UNIT_ROUNDOFF * bounds.center().abs();
         Shaft {
             middle,
             half: grown(origins),
             emitter: emitter.center() - middle,
             emitter_half: grown(emitter),
-            radius: GROWN * radius,
+            radius: ENLARGEMENT * radius,
             body: body * body,
         }
     }
@@ -171,17 +172,17 @@ pub(super) fn above_planes<S: Simd>(simd: S, planes: &TangentPlanes, extent: Vec
     above
 }
 
-/// Up to [`PIECE`] triangles that may hide something, side by side.
+/// Up to [`CHUNK`] triangles that may hide something, side by side.
 pub(super) struct Candidates {
-    corners: [[f32; PIECE]; 9],
+    corners: [[f32; CHUNK]; 9],
     /// The number of each that is cut out, or 0.
-    cuts: [u32; PIECE],
+    cuts: [u32; CHUNK],
     pub(super) count: usize,
 }
 
 impl Candidates {
     pub(super) fn new() -> Candidates {
-        Candidates { corners: [[0.0; PIECE]; 9], cuts: [0; PIECE], count: 0 }
+        Candidates { corners: [[0.0; CHUNK]; 9], cuts: [0; CHUNK], count: 0 }
     }
 
     #[inline(always)]
@@ -207,14 +208,14 @@ impl Candidates {
     /// The number of one of them if it is cut out, else 0.
     #[inline(always)]
     pub(super) fn cut(&self, number: usize) -> u32 {
-        self.cuts[number & (PIECE - 1)]
+        self.cuts[number & (CHUNK - 1)]
     }
 
     /// One of them, in all lanes.
     #[inline(always)]
     pub(super) fn splat<S: Simd>(&self, simd: S, number: usize) -> [Axes<S>; 3] {
-        let number = number & (PIECE - 1);
-        let corner = |axes: &[[f32; PIECE]]| Vec3::new(axes[0][number], axes[1][number], axes[2][number]);
+        let number = number & (CHUNK - 1);
+        let corner = |axes: &[[f32; CHUNK]]| Vec3::new(axes[0][number], axes[1][number], axes[2][number]);
         let (a, b, c) = (corner(&self.corners[..3]), corner(&self.corners[3..6]), corner(&self.corners[6..]));
         [splat(simd, a), splat(simd, b), splat(simd, c)]
     }

@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 use lightmesh_layout::constants::WARP;
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
-use lightmesh_trace::accel::{Bvh, Form, TangentPlanes};
+use lightmesh_trace::accel::{AcceleratorKind, Bvh, TangentPlanes};
 use lightmesh_trace::simd::{LANES, dispatch};
 use rayon::prelude::*;
 
@@ -17,10 +17,10 @@ use crate::counters::Tally;
 use crate::data::items::Items;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::shadow::occlusion::gathered;
+use crate::shadow::projected_light::Emitter;
 use crate::shadow::sample_ray::SampleRays;
-use crate::shadow::sight::Emitter;
 use crate::shadow::terminator::ShadowPoint;
 use crate::shadow::weights::Weighed;
 use crate::surface::SurfacePoint;
@@ -45,14 +45,14 @@ const NODE_COST: u32 = 25;
 /// A ray at a triangle.
 const TRIANGLE_COST: u32 = 15;
 /// No ray costs less.
-const LEAST_RAY_COST: u32 = 50;
+const MIN_RAY_COST: u32 = 50;
 /// Rays are considered when this many times what was spent exceeds their price.
-const LEAST_SPENT: f64 = 2.0;
+const MIN_COST_RATIO: f64 = 2.0;
 
 /// The visible share of each light from each surface point.
-pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visibility {
-    let rows = wave.rows(aim);
-    let emitters = Emitter::all(wave, aim, &rows);
+pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, target: &ShadowTarget) -> Visibility {
+    let rows = wave.rows(target);
+    let emitters = Emitter::all(wave, target, &rows);
     let level = Level::new();
     // Each share has one writer.
     let rays = wave.hits.len();
@@ -60,7 +60,7 @@ pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, aim: &Aim) -> Visib
     (0..items.len().div_ceil(RUN)).into_par_iter().for_each(|run| {
         let run = run * RUN..items.len().min((run + 1) * RUN);
         let points = run.clone().map(|item| items.members(item).len()).sum();
-        wave.job.piece(points, || {
+        wave.context.piece(points, || {
             let run = run.map(|item| items.members(item));
             dispatch!(level, simd => shares_of_run(simd, wave, &emitters, run, &shares));
         });
@@ -89,7 +89,7 @@ fn shares_of_run<'a, S: Simd>(
             }
         }
     }
-    Tally::add(&wave.job.tally.shadow_rays, item.asked);
+    Tally::add(&wave.context.tally.shadow_rays, item.asked);
 }
 
 /// The surface points of an item.
@@ -280,8 +280,8 @@ impl<'a, S: Simd> Item<'a, S> {
         }
         progress.check = 2 * progress.tested;
         let geometry = &self.wave.scene.geometry;
-        match (view.set, geometry.accelerator.form()) {
-            (Some(set), Form::Bvh(bvh)) => !self.rays_instead(view, set, bvh, progress),
+        match (view.set, geometry.accelerator.kind()) {
+            (Some(set), AcceleratorKind::Bvh(bvh)) => !self.rays_instead(view, set, bvh, progress),
             _ => true,
         }
     }
@@ -295,8 +295,8 @@ impl<'a, S: Simd> Item<'a, S> {
         // The estimate assumes that candidates go on hiding samples at the same rate until none is left. If they hide few, the search may
         // soon end, so part of the price of the rays must have been spent.
         let going_on = spent * f64::from(left) / f64::from(progress.before - left + 1);
-        let dearer = |ray: f64| going_on.min(LEAST_SPENT * spent) > ray * f64::from(left);
-        if !dearer(f64::from(LEAST_RAY_COST)) {
+        let dearer = |ray: f64| going_on.min(MIN_COST_RATIO * spent) > ray * f64::from(left);
+        if !dearer(f64::from(MIN_RAY_COST)) {
             return false;
         }
         // What a ray costs is found by casting a few, once for several items.

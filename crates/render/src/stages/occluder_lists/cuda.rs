@@ -2,7 +2,7 @@
 
 use lightmesh_kernels::Runtime;
 use lightmesh_layout::constants::{
-    FOUND_TRIANGLES, MOST_STARTS, MOST_WORDS, OCCLUDER_PARTS, PLANE_WORDS, ROW_TABLE_WORDS, SEARCHED_WORDS, WARP,
+    FOUND_TRIANGLES, MAX_SEARCH_ROOTS, MAX_WORDS, OCCLUDER_PARTS, PLANE_WORDS, ROW_TABLE_WORDS, SEARCHED_WORDS, WARP,
 };
 use lightmesh_layout::stages::Shadows;
 
@@ -10,13 +10,13 @@ use crate::error::RenderError;
 use crate::gpu::items::DeviceItems;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{Cuda, PerStructure, Work, blocks_for, per_structure};
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::shadow::launch::{ByWords, WarpWork, arguments, test_samples};
 
 const KERNELS: ByWords = [
     (1, per_structure!("occluder_lists", "shadows_1")),
     (3, per_structure!("occluder_lists", "shadows_3")),
-    (MOST_WORDS, per_structure!("occluder_lists", "shadows_10")),
+    (MAX_WORDS, per_structure!("occluder_lists", "shadows_10")),
 ];
 const STARTS: PerStructure = per_structure!("occluder_lists", "find_starts");
 /// Tiles times lights in the very first launch.
@@ -28,11 +28,11 @@ pub(crate) fn occluder_lists<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
     items: &DeviceItems<R>,
-    aim: &Aim,
+    target: &ShadowTarget,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let pool = cuda.pool();
     let units = items.tiles.len() as u64 * wave.group().len() as u64;
-    let starts = pool.room::<u32>("starts of searches", units as usize * (MOST_STARTS as usize + 1))?;
+    let starts = pool.room::<u32>("starts of searches", units as usize * (MAX_SEARCH_ROOTS as usize + 1))?;
     let taken = pool.room::<u32>("taken items", 1)?;
     let complete = |record| Shadows {
         members: items.members.input(),
@@ -45,13 +45,17 @@ pub(crate) fn occluder_lists<R: Runtime>(
     // Where the searches of a tile's items start.
     let record = complete(arguments(cuda, wave)?);
     let kernel = STARTS.of(wave.scene);
-    cuda.in_pieces(wave.job, kernel, Work { units, cost: 1, first: FIRST_STARTS, progress: 0 }, |piece| {
+    cuda.in_pieces(wave.context, kernel, Work { units, cost: 1, first: FIRST_STARTS, progress: 0 }, |piece| {
         cuda.launch(kernel, blocks_for(&piece, WARP), &Shadows { first: piece.start, ..record })
     })?;
     // The items. See `ListMemory` in item.cuh.
-    let words =
-        4 * OCCLUDER_PARTS * WARP + SEARCHED_WORDS + PLANE_WORDS + FOUND_TRIANGLES + MOST_STARTS + 2 * ROW_TABLE_WORDS;
+    let words = 4 * OCCLUDER_PARTS * WARP
+        + SEARCHED_WORDS
+        + PLANE_WORDS
+        + FOUND_TRIANGLES
+        + MAX_SEARCH_ROOTS
+        + 2 * ROW_TABLE_WORDS;
     let units = items.count as u64;
     let work = WarpWork { units, taken: Some(&taken), first: FIRST_ITEMS, progress: units, words };
-    test_samples(cuda, wave, aim, (&KERNELS, work), complete)
+    test_samples(cuda, wave, target, (&KERNELS, work), complete)
 }

@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, mask32x8, u32x8};
-use lightmesh_layout::constants::{MOST_ROWS, MOST_WORDS};
+use lightmesh_layout::constants::{MAX_ROWS, MAX_WORDS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::Bounds;
 use lightmesh_trace::accel::Bvh;
@@ -11,9 +11,9 @@ use lightmesh_trace::simd::{Axes, LANES};
 use super::candidates::{Candidates, Chosen, Shaft};
 use crate::data::wave::HostWave;
 use crate::shadow::cuts::Cuts;
-use crate::shadow::occlusion::{Bits, Offsets, Sights};
+use crate::shadow::occlusion::{Bits, Offsets, ProjectedLights};
+use crate::shadow::projected_light::{Emitter, ProjectedLight};
 use crate::shadow::sample_ray::SampleRays;
-use crate::shadow::sight::{Emitter, Sight};
 use crate::shadow::weights::Weighed;
 use crate::surface::SurfacePoint;
 
@@ -32,11 +32,11 @@ pub(super) struct Group<S: Simd> {
     normal: Axes<S>,
     /// The lanes that have a surface point.
     has: u32,
-    /// Whether the sights are computed: that is done when they are needed, since most items find nothing between them and a light.
+    /// Whether the light is projected: that is done when it is needed, since most items find nothing between them and a light.
     looked: bool,
     shaft: Shaft,
-    sight: [Sight; LANES],
-    sights: Sights<S>,
+    projected: [ProjectedLight; LANES],
+    projected_lights: ProjectedLights<S>,
     offsets: Offsets<S>,
     /// The samples still seen.
     bits: Bits<S>,
@@ -49,17 +49,17 @@ impl<S: Simd> Group<S> {
     #[inline(always)]
     pub(super) fn new(simd: S) -> Group<S> {
         let (zero, none) = (f32x8::splat(simd, 0.0), [f32x8::splat(simd, 0.0); 3]);
-        let sight = [Sight::default(); LANES];
+        let projected = [ProjectedLight::default(); LANES];
         Group {
             origin: none,
             normal: none,
             has: 0,
             looked: false,
             shaft: Shaft::default(),
-            sight,
-            sights: Sights::splat(simd, &SurfacePoint::default(), &sight[0]),
-            offsets: [zero; MOST_ROWS as usize],
-            bits: [u32x8::splat(simd, 0); MOST_WORDS as usize],
+            projected,
+            projected_lights: ProjectedLights::splat(simd, &SurfacePoint::default(), &projected[0]),
+            offsets: [zero; MAX_ROWS as usize],
+            bits: [u32x8::splat(simd, 0); MAX_WORDS as usize],
             lanes: 0,
         }
     }
@@ -84,7 +84,7 @@ impl<S: Simd> Group<S> {
         self.normal = [f32x8::from_slice(simd, u), f32x8::from_slice(simd, v), f32x8::from_slice(simd, w)];
     }
 
-    /// Finds the samples in front of the surfaces. Where all or none of a disc is in front of all of them, that needs no sights.
+    /// Finds the samples in front of the surfaces. Where all or none of a disc is in front of all of them, that needs no projection.
     #[inline(always)]
     pub(super) fn begin(&mut self, simd: S, view: &View, rays: &[u32], points: &[SurfacePoint]) {
         self.looked = false;
@@ -94,7 +94,7 @@ impl<S: Simd> Group<S> {
         }
         let Some(set) = view.set else {
             self.look(simd, view, rays, points);
-            self.lanes = self.sights.center_above_horizon(simd).to_bitmask() as u32 & self.has;
+            self.lanes = self.projected_lights.center_above_horizon(simd).to_bitmask() as u32 & self.has;
             return;
         };
         if view.emitter.is_disc() {
@@ -109,29 +109,32 @@ impl<S: Simd> Group<S> {
             }
         }
         self.look(simd, view, rays, points);
-        self.bits = self.sights.above_horizon(simd, set, &self.offsets);
+        self.bits = self.projected_lights.above_horizon(simd, set, &self.offsets);
         for (word, bits) in self.bits.iter_mut().enumerate().take(set.words as usize) {
             let mut lanes = [0; LANES];
-            let sights = self.sight.iter().take(self.has.count_ones() as usize);
-            lanes.iter_mut().zip(sights).for_each(|(lane, sight)| *lane = sight.valid_word(set, word));
+            let projected_lights = self.projected.iter().take(self.has.count_ones() as usize);
+            lanes
+                .iter_mut()
+                .zip(projected_lights)
+                .for_each(|(lane, projected)| *lane = projected.valid_word(set, word));
             *bits &= u32x8::from_slice(simd, &lanes);
         }
         self.lanes = lanes_of(simd, &self.bits, set);
     }
 
-    /// Computes the sights.
+    /// Projects the light for each point.
     #[inline(always)]
     fn look(&mut self, simd: S, view: &View, rays: &[u32], points: &[SurfacePoint]) {
         self.looked = true;
         let count = self.has.count_ones() as usize;
-        for ((sight, &ray), point) in self.sight.iter_mut().zip(&rays[..count]).zip(points) {
-            *sight = view.emitter.sight(view.wave, ray as usize, point);
+        for ((projected, &ray), point) in self.projected.iter_mut().zip(&rays[..count]).zip(points) {
+            *projected = view.emitter.projected(view.wave, ray as usize, point);
         }
-        self.sights = Sights::gather(simd, &points[..count], &self.sight);
+        self.projected_lights = ProjectedLights::gather(simd, &points[..count], &self.projected);
         let Some(set) = view.set else { return };
         for (row, offset) in self.offsets.iter_mut().enumerate().take(set.rows as usize) {
             let mut lanes = [0.0; LANES];
-            lanes.iter_mut().zip(&self.sight).for_each(|(lane, sight)| *lane = sight.offset(set, row));
+            lanes.iter_mut().zip(&self.projected).for_each(|(lane, projected)| *lane = projected.offset(set, row));
             *offset = f32x8::from_slice(simd, &lanes);
         }
     }
@@ -171,10 +174,10 @@ impl<S: Simd> Group<S> {
                 let held = (candidates.splat(simd, number), cuts);
                 match view.set {
                     Some(set) => {
-                        self.sights.hide(simd, held, (set, &self.offsets), self.lanes, &mut self.bits);
+                        self.projected_lights.hide(simd, held, (set, &self.offsets), self.lanes, &mut self.bits);
                         self.lanes = lanes_of(simd, &self.bits, set);
                     }
-                    None => self.lanes &= !self.sights.hides_center(simd, held, self.lanes),
+                    None => self.lanes &= !self.projected_lights.hides_center(simd, held, self.lanes),
                 }
                 tested += 1;
                 if self.lanes == 0 {
@@ -204,7 +207,7 @@ impl<S: Simd> Group<S> {
             sample_rays.most = most;
             for (word, seen) in seen.iter_mut().enumerate().take(set.words as usize).filter(|(_, seen)| seen[lane] != 0)
             {
-                let from = (&points[lane], &self.sight[lane]);
+                let from = (&points[lane], &self.projected[lane]);
                 seen[lane] = sample_rays.cast(simd, (bvh, view.emitter.scale()), from, (set, word), seen[lane]);
             }
         }
@@ -233,12 +236,12 @@ impl<S: Simd> Group<S> {
             if !self.looked {
                 self.look(simd, view, rays, points);
             }
-            let mut bits = [0; MOST_WORDS as usize];
+            let mut bits = [0; MAX_WORDS as usize];
             if self.lanes != 0 {
                 bits.iter_mut().zip(&self.bits).for_each(|(bits, word)| *bits = <[u32; LANES]>::from(*word)[lane]);
             }
-            let sight = &self.sight[lane];
-            weighed.add(&view.emitter.weights(&points[lane], sight), sight, set, &bits);
+            let projected = &self.projected[lane];
+            weighed.add(&view.emitter.weights(&points[lane], projected), projected, set, &bits);
         }
     }
 

@@ -23,7 +23,7 @@
 // What is spent when lists are compared with rays for the first time.
 #define FIRST_CHECK (4 * RAY_COST)
 // Rays are considered when this many times what was spent exceeds their price.
-#define LEAST_SPENT 2.0f
+#define MIN_COST_RATIO 2.0f
 
 // What is known of the surface points that see anything of a light. Often it is the same for the next one.
 struct Around {
@@ -64,7 +64,7 @@ DEVICE ListMemory list_memory(unsigned *shared, unsigned search_words) {
     memory.found = shared;
     shared += FOUND_TRIANGLES;
     memory.starts = shared;
-    shared += MOST_STARTS;
+    shared += MAX_SEARCH_ROOTS;
     memory.search = shared;
     shared += search_words;
     memory.tables = shared;
@@ -74,9 +74,9 @@ DEVICE ListMemory list_memory(unsigned *shared, unsigned search_words) {
 }
 
 // A warp's surface points and their view of a light.
-struct ItemSight {
+struct ItemProjection {
     SurfacePoint point;
-    Sight sight;
+    Sight projected;
     Shape shape;
     // Whether the lane has a surface point.
     bool has;
@@ -94,43 +94,45 @@ struct ItemSight {
 // The view of a light is computed when it is needed: most items find nothing between them and a light. This and what follows are calls,
 // so that the instructions that all items need fit into the cache.
 COLD Sight view_of(const Shadows &args, unsigned light, Shape shape, unsigned lines, SurfacePoint point, unsigned long long key) {
-    return sight_of(args.scene, args.sampling, light, shape, lines, point, key);
+    return projected_light_of(args.scene, args.sampling, light, shape, lines, point, key);
 }
 
-DEVICE void look(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set) {
-    item.sight = view_of(args, light, item.shape, set.lines, item.point, item.key);
+DEVICE void look(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set) {
+    item.projected = view_of(args, light, item.shape, set.lines, item.point, item.key);
     item.looked = true;
 }
 
 // The view and the rows of its samples, unless they are known.
-DEVICE void look_at_rows(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table) {
+DEVICE void look_at_rows(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set, const RowTable &table) {
     if (item.looked)
         return;
     look(args, item, light, set);
-    fill_row_offsets(item.sight, set, table);
+    fill_row_offsets(item.projected, set, table);
 }
 
 // The samples in front of a surface that the emitter may reach below.
 template <unsigned WORDS>
-COLD Seen<WORDS> partly_unhidden(bool has, SurfacePoint point, Sight sight, Shape shape, const SampleRows &set, RowTable table) {
-    return seen_unhidden<WORDS>(has, point, sight, shape, set, table);
+COLD Seen<WORDS> partly_unhidden(bool has, SurfacePoint point, Sight projected, Shape shape, const SampleRows &set,
+                                 RowTable table) {
+    return seen_unhidden<WORDS>(has, point, projected, shape, set, table);
 }
 
 // 1. The samples in front of the surface. Where all or none of the emitter is in front of all surfaces, that needs no view of it.
 template <unsigned WORDS>
-DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table) {
+DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set,
+                            const RowTable &table) {
     const Light &emitter = args.scene.lights[light];
     float radius;
     const Vec3 way = way_to(args.scene, emitter, item.point.origin, radius);
     const float height = dot(item.point.normal, way);
-    const float room = GROWN * radius + (GROWN - 1.0f) * element_sum(abs(way));
+    const float room = ENLARGEMENT * radius + (ENLARGEMENT - 1.0f) * element_sum(abs(way));
     const bool above = height > room, below = height < -room;
     Seen<WORDS> seen = {};
     if (!__any_sync(ALL_LANES, item.has && !below))
         return seen;
     if (item.shape != SHAPE_DISC || __any_sync(ALL_LANES, item.has && !above && !below)) {
         look(args, item, light, set);
-        return partly_unhidden<WORDS>(item.has, item.point, item.sight, item.shape, set, table);
+        return partly_unhidden<WORDS>(item.has, item.point, item.projected, item.shape, set, table);
     }
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)
@@ -141,15 +143,15 @@ DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemSight &item, unsigned light
 // 4. What candidates hide, until nothing is left. Returns whether anything is. `cuts` are the numbers of their opacities, 0 for those that are
 // opaque, with a coverage.
 template <unsigned WORDS>
-DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const float4 *candidates, const Coverage *coverage,
+DEVICE bool test_candidates(const ItemProjection &item, const RowTable &table, const float4 *candidates, const Coverage *coverage,
                             const unsigned *cuts, unsigned count, Seen<WORDS> &seen) {
     ROLLED
     for (unsigned k = 0; k < count; ++k) {
         const Hiding triangle = {candidates + OCCLUDER_PARTS * k, coverage, cuts + k};
         if (item.shape == SHAPE_POINT)
-            seen.bits[0] &= hides_center(item.point, item.sight, triangle) ? 0 : 1;
+            seen.bits[0] &= hides_center(item.point, item.projected, triangle) ? 0 : 1;
         else
-            hide<WORDS>(item.point, item.sight, triangle, table, any(seen), seen.bits);
+            hide<WORDS>(item.point, item.projected, triangle, table, any(seen), seen.bits);
         if (!__any_sync(ALL_LANES, any(seen)))
             return false;
     }
@@ -159,15 +161,15 @@ DEVICE bool test_candidates(const ItemSight &item, const RowTable &table, const 
 // 3. Chooses among up to 32 of the triangles found, one per lane, and tests them. Returns whether anything is still seen. `tested` is the number of
 // candidates.
 template <unsigned WORDS, class Structure>
-DEVICE bool test_found(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const RowTable &table,
-                       const Region<ShaftForm> &region, const Structure &structure, const ListMemory &memory, unsigned first,
+DEVICE bool test_found(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set, const RowTable &table,
+                       const Region<ShaftShape> &region, const Structure &structure, const ListMemory &memory, unsigned first,
                        unsigned count, unsigned &tested, Seen<WORDS> &seen) {
     const unsigned lane = lane_of_thread();
     Occluding own;
     Choice choice = DROPPED;
     if (lane < count) {
         const Corners corners = load_corners(triangle_at(structure, memory.found[first + lane]));
-        if (in_shaft(region.form, corners) && above_planes(region.planes, 2.0f * memory.shaft->half, corners)) {
+        if (in_shaft(region.shape, corners) && above_planes(region.planes, 2.0f * memory.shaft->half, corners)) {
             own = occluding(corners);
             choice = choose(*memory.shaft, own);
         }
@@ -206,13 +208,14 @@ DEVICE bool rays_are_cheaper(unsigned spent, unsigned before, const Seen<WORDS> 
     const unsigned own = number(seen);
     const float left = (float)warp_sum(own), hidden = (float)warp_sum(before - own), walks = warp_max((float)own);
     const float going_on = (float)spent * left / (hidden + 1.0f);
-    return fminf(going_on, LEAST_SPENT * (float)spent) > (float)RAY_COST * walks;
+    return fminf(going_on, MIN_COST_RATIO * (float)spent) > (float)RAY_COST * walks;
 }
 
 // Rays in place of the rest of a search. This is a call, so that few registers are needed where there are none.
 template <unsigned WORDS, class Structure>
-COLD Seen<WORDS> rays_instead(const Structure &structure, float scale, SurfacePoint point, Sight sight, RowTable table, Seen<WORDS> seen) {
-    cast_to_samples<WORDS>(structure, scale, point, sight, table, seen);
+COLD Seen<WORDS> rays_instead(const Structure &structure, float scale, SurfacePoint point, Sight projected, RowTable table,
+                              Seen<WORDS> seen) {
+    cast_to_samples<WORDS>(structure, scale, point, projected, table, seen);
     return seen;
 }
 
@@ -223,7 +226,7 @@ template <>
 constexpr bool HAS_RAYS<InstancedBvh> = true;
 
 // 2. The box around the surface points that are `alive`, and their tangent planes.
-DEVICE void look_around(const ItemSight &item, bool alive, const ListMemory &memory) {
+DEVICE void look_around(const ItemProjection &item, bool alive, const ListMemory &memory) {
     const unsigned lanes = __ballot_sync(ALL_LANES, alive);
     if (memory.around->lanes == lanes)
         return;
@@ -239,12 +242,13 @@ DEVICE void look_around(const ItemSight &item, bool alive, const ListMemory &mem
 
 // Where the searches of a tile's items for what hides a light start: their number, then these.
 DEVICE unsigned *starts_of(const Shadows &args, unsigned long long tile, unsigned light) {
-    return args.starts + (tile * (args.end_light - args.first_light) + light - args.first_light) * (MOST_STARTS + 1);
+    return args.starts + (tile * (args.end_light - args.first_light) + light - args.first_light) * (MAX_SEARCH_ROOTS + 1);
 }
 
 // The samples of a light that each lane sees; `tile` is that of the item, and `above` becomes the number of those in front of the surface.
 template <unsigned WORDS, class Structure>
-DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure, ItemSight &item, unsigned tile, unsigned light,
+DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure, ItemProjection &item, unsigned tile,
+                                 unsigned light,
                               const SampleRows &set, const ListMemory &memory, unsigned &above) {
     // 1. The samples in front of the surface.
     const RowTable table = row_table(memory.tables, item.shape, memory.offsets);
@@ -299,7 +303,7 @@ DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure
             if (!rays_are_cheaper(spent, above, seen))
                 continue;
             look_at_rows(args, item, light, set, table);
-            return rays_instead<WORDS>(structure, emitter.scale, item.point, item.sight, table, seen);
+            return rays_instead<WORDS>(structure, emitter.scale, item.point, item.projected, table, seen);
         }
     }
     return seen;
@@ -307,7 +311,7 @@ DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure
 
 // 6. What samples count near a light: adds a lane's to its share.
 template <unsigned WORDS>
-DEVICE void add_share(const Shadows &args, ItemSight &item, unsigned light, const SampleRows &set, const ListMemory &memory,
+DEVICE void add_share(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set, const ListMemory &memory,
                       const Seen<WORDS> &seen, unsigned above) {
     const Light &emitter = args.scene.lights[light];
     const float near = item.has ? nearness_of(args, item.shape, emitter, item.point) : 0.0f;
@@ -318,7 +322,7 @@ DEVICE void add_share(const Shadows &args, ItemSight &item, unsigned light, cons
         look_at_rows(args, item, light, set, table);
     WeightSums sums = {0.0f, 0.0f};
     if (weighs)
-        sums = weights_of<WORDS>(&emitter, item.point.normal, item.sight, &set, table, seen);
+        sums = weights_of<WORDS>(&emitter, item.point.normal, item.projected, &set, table, seen);
     if (near > 0.0f)
         add_weighed(args, light, item.ray, near, Weighed{above, left, sums.all, sums.lit});
     else if (item.has)
@@ -326,7 +330,7 @@ DEVICE void add_share(const Shadows &args, ItemSight &item, unsigned light, cons
 }
 
 // Places the surface points where a light is looked for.
-DEVICE void place(const Shadows &args, ItemSight &item, unsigned light, const ListMemory &memory) {
+DEVICE void place(const Shadows &args, ItemProjection &item, unsigned light, const ListMemory &memory) {
     if (!item.curved)
         return;
     const bool was_placed = item.placed;
@@ -347,7 +351,7 @@ template <unsigned WORDS, class Structure>
 DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure, const ListMemory &memory, unsigned long long entry) {
     const unsigned lane = lane_of_thread(), count = (unsigned)entry & 63;
     const unsigned long long slot = entry >> 6;
-    ItemSight item;
+    ItemProjection item;
     item.has = lane < count;
     item.ray = args.members[slot + (item.has ? lane : 0)];
     item.point = surface_point_of(args.scene, args.rays, args.hits, item.ray);

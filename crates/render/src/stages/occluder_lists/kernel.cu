@@ -17,7 +17,7 @@ template <class Structure>
 DEVICE void shadows_3(const Shadows &args, const Structure &structure) { shadows_of_items<3>(args, structure); }
 
 template <class Structure>
-DEVICE void shadows_10(const Shadows &args, const Structure &structure) { shadows_of_items<MOST_WORDS>(args, structure); }
+DEVICE void shadows_10(const Shadows &args, const Structure &structure) { shadows_of_items<MAX_WORDS>(args, structure); }
 
 template <class Structure>
 DEVICE void find_starts(const Shadows &args, const Structure &structure) { starts_of_tile(args, structure); }

@@ -9,7 +9,7 @@ use lightmesh_trace::accel::Hit;
 use rayon::prelude::*;
 
 use super::SampleRange;
-use super::alike::{Facet, Surfaces, lets_through};
+use super::same_surface::{Facet, Surfaces, lets_through};
 use crate::counters::Tally;
 use crate::data::mattes::count;
 use crate::data::picture::Picture;
@@ -32,7 +32,7 @@ pub(crate) fn pixel_samples(
     range: &SampleRange,
 ) -> (PixelSamples, RayList, Vec<Hit>) {
     let SampleRange { all, numbers } = range;
-    let Wave { job, scene, .. } = *wave;
+    let Wave { context, scene, .. } = *wave;
     let (mut rays, mut hits) = (wave.rays.clone(), wave.hits.clone());
     let view = rays.view.expect("the rays are a camera's");
     let (pixels, first) = (rays.pixels.len(), film.rows.start * view.size()[0]);
@@ -48,7 +48,7 @@ pub(crate) fn pixel_samples(
     all_hits.par_chunks_mut(BATCH * count).enumerate().for_each_init(
         || (Vec::new(), scene.geometry.beams()),
         |(rays, beams), (batch, hits)| {
-            job.piece(hits.len(), || {
+            context.piece(hits.len(), || {
                 let start = batch * BATCH;
                 let pixels = first + start as u32..first + (start + hits.len() / count) as u32;
                 all.rays(level, &view, pixels, numbers.clone(), rays);
@@ -56,7 +56,7 @@ pub(crate) fn pixel_samples(
             });
         },
     );
-    Tally::add(&job.tally.rays, all_hits.len() as u64);
+    Tally::add(&context.tally.rays, all_hits.len() as u64);
     let mut samples = PixelSamples {
         hits: Arc::new(all_hits),
         state: vec![0; pixels],

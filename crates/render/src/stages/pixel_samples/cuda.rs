@@ -21,7 +21,7 @@ const NEAREST: PerModule = per_module!("pixel_samples", "nearest_samples");
 const IDS: PerModule = per_module!("pixel_samples", "count_ids");
 const MERGE: PerModule = per_module!("pixel_samples", "merge_samples");
 /// Logarithm of the number of samples of a pixel that neighbouring threads cast.
-const MOST_TOGETHER: u32 = 3;
+const MAX_TOGETHER: u32 = 3;
 /// Number of blocks in the first launch.
 const FIRST: u64 = 256;
 
@@ -36,7 +36,7 @@ pub(crate) fn pixel_samples<R: Runtime>(
     range: &SampleRange,
 ) -> Result<Sampled<R>, RenderError> {
     let SampleRange { all, numbers } = range;
-    let Wave { job, scene, .. } = *wave;
+    let Wave { context, scene, .. } = *wave;
     let mut rays = DeviceRays::new(wave.rays.record, None, wave.rays.spacing);
     let centers = cuda.pool().room("hits of centres", rays.len())?;
     cuda.copy(&wave.hits.hits, &centers, rays.len())?;
@@ -59,7 +59,7 @@ pub(crate) fn pixel_samples<R: Runtime>(
         spacing: rays.spacing,
         samples: [numbers.start, count as u32],
         all_samples: all.samples,
-        together: 1 << (count as u32).trailing_zeros().min(MOST_TOGETHER),
+        together: 1 << (count as u32).trailing_zeros().min(MAX_TOGETHER),
         lanes: (count as u32).next_power_of_two(),
         weight: 1.0 / all.samples as f32,
         contrast: all.contrast,
@@ -75,15 +75,15 @@ pub(crate) fn pixel_samples<R: Runtime>(
     let kernel = CAST.of(scene);
     let blocks = rays.blocks(BLOCK_SIDE);
     let work = Work { units: blocks * count as u64, cost: 1, first: FIRST, progress: (pixels * count) as u64 };
-    cuda.in_pieces(job, kernel, work, |piece| {
+    cuda.in_pieces(context, kernel, work, |piece| {
         cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
     })?;
-    Tally::add(&job.tally.rays, (pixels * count) as u64);
+    Tally::add(&context.tally.rays, (pixels * count) as u64);
 
     // What is it called? Coverage and layers.
     let launch = |kernel: Kernel| {
         let work = Work { units: blocks, cost: count as u64, first: FIRST, progress: 0 };
-        cuda.in_pieces(job, kernel, work, |piece| {
+        cuda.in_pieces(context, kernel, work, |piece| {
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
         })
     };
@@ -100,7 +100,7 @@ pub(crate) fn pixel_samples<R: Runtime>(
     } else {
         let work = Work { units: blocks * u64::from(record.lanes), cost: 1, first: FIRST, progress: 0 };
         let merge = MERGE.of(scene);
-        cuda.in_pieces(job, merge, work, |piece| {
+        cuda.in_pieces(context, merge, work, |piece| {
             cuda.launch(merge, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
         })?;
     }

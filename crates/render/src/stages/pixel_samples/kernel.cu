@@ -9,7 +9,7 @@
 #include "cuda/tally.cuh"
 #include "cuda/warp.cuh"
 #include "shading/ids.cuh"
-#include "stages/pixel_samples/alike.cuh"
+#include "stages/pixel_samples/same_surface.cuh"
 
 // The threads of a warp along a curve: any four, eight or sixteen from a multiple of their number on take neighbouring pixels.
 DEVICE unsigned along_curve(unsigned thread) {

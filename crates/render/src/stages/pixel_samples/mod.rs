@@ -10,9 +10,9 @@
 //!
 //! Layers and coverage are those of the samples: depth, normal, position and ids of the nearest one; how many see each object and material.
 
-pub(crate) mod alike;
 pub(crate) mod cpu;
 pub(crate) mod cuda;
+pub(crate) mod same_surface;
 
 use std::ops::Range;
 

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use crate::counters::Tally;
 use crate::data::rays::RayList;
-use crate::job::Job;
 use crate::prepared::PreparedScene;
+use crate::render_context::RenderContext;
 use crate::view::View;
 
 /// Number of rays per task, at most: enough to keep the dispatch cheap, few enough to balance the threads.
@@ -44,13 +44,13 @@ pub fn blocks_of_pixels(width: u32, rows: Range<u32>) -> Vec<u32> {
     pixels
 }
 
-pub(crate) fn primary_rays(job: &Job, scene: &PreparedScene, list: &RayList) -> Vec<Hit> {
-    let hits = closest_hits(scene, list, |rays, trace| job.piece(rays, trace));
+pub(crate) fn primary_rays(context: &RenderContext, scene: &PreparedScene, list: &RayList) -> Vec<Hit> {
+    let hits = closest_hits(scene, list, |rays, trace| context.piece(rays, trace));
     let found = hits.par_iter().filter(|hit| hit.is_some()).count() as u64;
-    Tally::add(&job.tally.rays, list.rays.len() as u64);
-    Tally::add(&job.tally.surface_points, found);
+    Tally::add(&context.tally.rays, list.rays.len() as u64);
+    Tally::add(&context.tally.surface_points, found);
     if list.from_camera() {
-        Tally::add(&job.tally.hits, found);
+        Tally::add(&context.tally.hits, found);
     }
     hits
 }

@@ -25,7 +25,7 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&
         _ => std::mem::take(&mut picture.sums),
     };
     sums.par_chunks_mut(BATCH).enumerate().for_each(|(batch, sums)| {
-        wave.job.piece(sums.len(), || {
+        wave.context.piece(sums.len(), || {
             for (ray, sum) in (batch * BATCH..).zip(sums) {
                 if wave.sees(ray) {
                     add_group(wave, visibility, &targets, &ambient, ray, sum);
@@ -99,7 +99,7 @@ fn add_group(
     if is_first {
         *radiance = surface.unlit(ambient, ray);
     }
-    let reach = wave.scene.geometry.reach(surface.point.origin);
+    let reach = wave.scene.geometry.sun_distance(surface.point.origin);
     for index in visibility.lights.clone() {
         if visibility.of(index, ray) > 0.0 {
             let light = &wave.lights()[index];
@@ -134,7 +134,7 @@ fn add_light_groups(
         let mut terms = vec![Vec3::ZERO; planes * sums.len()];
         terms.par_chunks_mut(BATCH * planes).zip(sums.par_chunks(BATCH)).enumerate().for_each(
             |(batch, (terms, sums))| {
-                wave.job.piece(0, || {
+                wave.context.piece(0, || {
                     for (index, (terms, &sum)) in terms.chunks_exact_mut(planes).zip(sums).enumerate() {
                         let ray = first + batch * BATCH + index;
                         by_light(wave, visibility, targets, ambient, ray, sum, terms);
@@ -197,7 +197,7 @@ fn by_light(
     if is_first {
         terms[rest] = surface.unlit(ambient, ray);
     }
-    let reach = wave.scene.geometry.reach(surface.point.origin);
+    let reach = wave.scene.geometry.sun_distance(surface.point.origin);
     for (index, term) in lights.zip(terms) {
         if visibility.of(index, ray) > 0.0 {
             let light = &wave.lights()[index];
@@ -222,7 +222,7 @@ fn catch_shadows(wave: &HostWave, targets: &LightTargets, ambient: &AmbientLight
 
 /// The light that a surface gets as a share of what it would get alone.
 fn lit_share(wave: &HostWave, surface: &Surface, targets: &LightTargets, ambient: &AmbientLight, lit: Vec3) -> f32 {
-    let reach = wave.scene.geometry.reach(surface.point.origin);
+    let reach = wave.scene.geometry.sun_distance(surface.point.origin);
     let mut alone = surface.alone(ambient);
     for (index, light) in wave.lights().iter().enumerate() {
         alone += targets.unshadowed(surface, light, index, reach);

@@ -55,13 +55,13 @@ pub(crate) fn shade<R: Runtime>(
         record.sampled_pixels = sampled.pixels;
     }
     let work = Work { units: rays.blocks(BLOCK_SIDE), cost, first: FIRST, progress: rays.len() as u64 };
-    cuda.in_pieces(wave.job, KERNEL, work, |piece| {
+    cuda.in_pieces(wave.context, KERNEL, work, |piece| {
         cuda.launch(KERNEL, blocks_for(&piece, BLOCK), &Shade { first_block: piece.start, ..record })
     })?;
     // The radiance of each light by itself; then the sums of rays that share a pixel, in their order.
     let work = Work { progress: 0, ..work };
     let launch = |kernel: Kernel| {
-        cuda.in_pieces(wave.job, kernel, work, |piece| {
+        cuda.in_pieces(wave.context, kernel, work, |piece| {
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &Shade { first_block: piece.start, ..record })
         })
     };

@@ -6,25 +6,25 @@ use rayon::prelude::*;
 use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
-use crate::shadow::sight::Emitter;
+use crate::shadow::projected_light::Emitter;
 use crate::shadow::terminator::ShadowPoint;
-use crate::shadow::{Aim, SEGMENTS, hidden};
+use crate::shadow::{SEGMENTS, ShadowTarget, hidden};
 use crate::surface::long_segment;
 
 /// Maximum number of surface points per task.
 const BATCH: usize = 1024;
 
 /// The visible share of each light, by shadow rays from each surface point.
-pub(crate) fn shadow_rays(wave: &HostWave, aim: &Aim) -> Visibility {
-    let rows = wave.rows(aim);
-    let emitters = Emitter::all(wave, aim, &rows);
-    let most = wave.lights().iter().map(|light| aim.samples(light)).max().unwrap_or(1);
+pub(crate) fn shadow_rays(wave: &HostWave, target: &ShadowTarget) -> Visibility {
+    let rows = wave.rows(target);
+    let emitters = Emitter::all(wave, target, &rows);
+    let most = wave.lights().iter().map(|light| target.samples(light)).max().unwrap_or(1);
     let batch = (SEGMENTS / most as usize).clamp(1, BATCH);
     let mut visibility = Visibility::dark(wave.group(), wave.hits.len());
     visibility.parts(batch).into_par_iter().enumerate().for_each(|(number, shares)| {
         let first = number * batch;
         let rays = first..wave.hits.len().min(first + batch);
-        wave.job.piece(rays.len(), || {
+        wave.context.piece(rays.len(), || {
             let mut batch = Batch::new(wave);
             batch.take(rays);
             for (emitter, share) in emitters.iter().zip(shares) {
@@ -73,7 +73,7 @@ impl<'a> Batch<'a> {
                 }
             });
         }
-        Tally::add(&self.wave.job.tally.shadow_rays, self.segments.len() as u64);
+        Tally::add(&self.wave.context.tally.shadow_rays, self.segments.len() as u64);
         self.seen.clear();
         self.seen.resize(self.points.len(), 0);
         for (&owner, hidden) in self.owners.iter().zip(hidden(self.wave, &self.segments)) {

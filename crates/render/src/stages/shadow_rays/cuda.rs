@@ -6,7 +6,7 @@ use lightmesh_layout::stages::{ShadowRays, Shadows};
 use crate::error::RenderError;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, PerStructure, Work, blocks_for, per_structure, slices_of_rays};
-use crate::shadow::Aim;
+use crate::shadow::ShadowTarget;
 use crate::shadow::launch::SampleSets;
 
 const TO_CENTERS: PerStructure = per_structure!("shadow_rays", "shadow_rays");
@@ -16,12 +16,12 @@ const TO_SAMPLES: PerStructure = per_structure!("shadow_rays", "sample_rays");
 pub(crate) fn shadow_rays<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
-    aim: &Aim,
+    target: &ShadowTarget,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let visibility = DeviceVisibility::dark(cuda, wave.rays.len(), wave.group())?;
-    match aim {
-        Aim::Middle => to_centers(cuda, wave, &visibility)?,
-        Aim::Extent(_) => to_samples(cuda, wave, aim, &visibility)?,
+    match target {
+        ShadowTarget::Center => to_centers(cuda, wave, &visibility)?,
+        ShadowTarget::Area(_) => to_samples(cuda, wave, target, &visibility)?,
     }
     Ok(visibility)
 }
@@ -37,7 +37,7 @@ fn to_centers<R: Runtime>(
     let kernel = TO_CENTERS.of(wave.scene);
     for (index, slice) in slices.iter().enumerate() {
         let work = Work::of_rays(wave.rays.blocks(BLOCK_SIDE), slice, progress(index + 1) - progress(index));
-        cuda.in_pieces(wave.job, kernel, work, |piece| {
+        cuda.in_pieces(wave.context, kernel, work, |piece| {
             let arguments = ShadowRays {
                 scene: wave.scene.record,
                 rays: wave.rays.record,
@@ -58,12 +58,12 @@ fn to_centers<R: Runtime>(
 fn to_samples<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
-    aim: &Aim,
+    target: &ShadowTarget,
     visibility: &DeviceVisibility<R>,
 ) -> Result<(), RenderError> {
     let lights = visibility.lights.len() as u64;
     let kernel = TO_SAMPLES.of(wave.scene);
-    let sets = SampleSets::new(wave.rows(aim));
+    let sets = SampleSets::new(wave.rows(target));
     let slices = u64::from(sets.count) * lights;
     let progress = |slices_done: u64| wave.rays.len() as u64 * slices_done / slices;
     for slice in 0..slices {
@@ -71,7 +71,7 @@ fn to_samples<R: Runtime>(
         let record = Shadows { first_light: light, end_light: light + 1, ..sets.record(cuda, wave, visibility, set)? };
         let work =
             Work::of_rays(wave.rays.blocks(BLOCK_SIDE), &(0..sets.most(set)), progress(slice + 1) - progress(slice));
-        cuda.in_pieces(wave.job, kernel, work, |piece| {
+        cuda.in_pieces(wave.context, kernel, work, |piece| {
             let arguments = Shadows { first: piece.start, count: piece.end - piece.start, ..record };
             cuda.launch(kernel, blocks_for(&piece, BLOCK), &arguments)
         })?;

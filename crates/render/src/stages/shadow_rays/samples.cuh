@@ -7,11 +7,11 @@
 
 // Casts a ray to each sample of a row. Returns how many arrive.
 template <class Structure>
-DEVICE unsigned trace_row(const Shadows &args, const Structure &structure, const SurfacePoint &point, const Sight &sight,
+DEVICE unsigned trace_row(const Shadows &args, const Structure &structure, const SurfacePoint &point, const Sight &projected,
                           const SampleRows &set, unsigned row, float scale, unsigned &last, unsigned &cast) {
     unsigned seen = 0;
-    for (unsigned rest = valid_samples(sight, set, row); rest != 0; rest &= rest - 1) {
-        const Vec3 target = point.origin + sample_at(sight, set, row, __ffs(rest) - 1, scale);
+    for (unsigned rest = valid_samples(projected, set, row); rest != 0; rest &= rest - 1) {
+        const Vec3 target = point.origin + sample_at(projected, set, row, __ffs(rest) - 1, scale);
         if (!(dot(point.normal, target - point.origin) > 0.0f))
             continue;
         ++cast;
@@ -31,9 +31,9 @@ DEVICE unsigned trace_samples(const Shadows &args, const Structure &structure, c
         return cast && !hidden(structure, args.tally, light, point.origin, middle);
     }
     const SampleRows &set = args.sets[shape];
-    const Sight sight = sight_of(args.scene, args.sampling, index, shape, set.lines, point, ray_key(args.rays, ray));
+    const Sight projected = projected_light_of(args.scene, args.sampling, index, shape, set.lines, point, ray_key(args.rays, ray));
     unsigned seen = 0, last = Hit::NONE;
     for (unsigned row = 0; row < set.rows; ++row)
-        seen += trace_row(args, structure, point, sight, set, row, light.scale, last, cast);
+        seen += trace_row(args, structure, point, projected, set, row, light.scale, last, cast);
     return seen;
 }

@@ -21,7 +21,7 @@ DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, c
     const LightMesh &mesh = args.mesh;
     const auto near = region_near(Bounds{item.low, item.high}, mesh.radius + mesh.slack);
     const auto region = region_above(near, item.planes, mesh.slack);
-    // Unsieved: choosing candidates tests triangles more strictly than a sieve would.
+    // Unfiltered: choosing candidates tests triangles more strictly than a filter would.
     auto search = begin_search(structure, region, memory.search);
     bool asked = false;
     unsigned found = 0;

@@ -5,8 +5,8 @@
 #include "stages/short_tests/memory.cuh"
 #include "stages/short_tests/span.cuh"
 
-// Added to offsets, which are at least 1 - MOST_REACH, so that they have no sign.
-#define BOX_BIAS (MOST_REACH - 1)
+// Added to offsets, which are at least 1 - MAX_REACH, so that they have no sign.
+#define BOX_BIAS (MAX_REACH - 1)
 
 // Whether the plane of a triangle comes nearer than `reach` to the box around the origins.
 DEVICE bool plane_is_near(const CellItem &item, const Vec3 &a, const Vec3 &b, const Vec3 &c, float reach) {

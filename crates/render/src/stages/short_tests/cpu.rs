@@ -36,14 +36,14 @@ pub(crate) fn short_tests(wave: &HostWave, cells: &CellGroups, mesh: &LightMesh)
     let counts = pieces
         .into_par_iter()
         .map(|(run, piece)| {
-            wave.job.piece(piece.len() / words, || match wave.job.short_tests {
+            wave.context.piece(piece.len() / words, || match wave.context.short_tests {
                 ShortTests::Cells => dispatch!(level, simd => work.by_cell(simd, run.clone(), piece)),
                 ShortTests::Plain => work.plain(run.clone(), piece),
             })
         })
         .reduce(MaskCounts::default, |a, b| a + b);
 
-    let tally = &wave.job.tally;
+    let tally = &wave.context.tally;
     Tally::add(&tally.half_ball, counts.half_ball);
     Tally::add(&tally.used, counts.used);
     Tally::add(&tally.short_tests, counts.tested);

@@ -35,7 +35,7 @@ pub(crate) fn short_tests<R: Runtime>(
     let scene = wave.scene;
     let words = mesh.template.words();
     let masks = cuda.pool().room("masks", cells.count * 32 * words)?;
-    let by_cell = wave.job.short_tests == settings::ShortTests::Cells;
+    let by_cell = wave.context.short_tests == settings::ShortTests::Cells;
     let least = shared_words(scene.search_words());
     let all = least + 32 * words as u32;
     let (kernels, shared) = if !by_cell {
@@ -59,7 +59,7 @@ pub(crate) fn short_tests<R: Runtime>(
     };
     let each_item = |kernel, shared, progress| {
         let work = Work { units: cells.count as u64, cost: 1, first: FIRST_ITEMS, progress };
-        cuda.in_pieces(wave.job, kernel, work, |piece| {
+        cuda.in_pieces(wave.context, kernel, work, |piece| {
             let item_count = piece.end - piece.start;
             let arguments = ShortTests { first_item: piece.start, item_count, ..record };
             cuda.launch(kernel, warps_for(&piece, WARPS, shared), &arguments)

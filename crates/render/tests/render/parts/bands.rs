@@ -1,4 +1,4 @@
-use lightmesh_memory::Short;
+use lightmesh_memory::OverBudget;
 use lightmesh_render::internals::antialiasing::Antialiasing;
 use lightmesh_render::internals::bands::{RESERVE, check_picture, rows_in_parts, rows_on_host};
 use lightmesh_render::{Filter, LightGroups, Plan, RenderError};
@@ -13,7 +13,9 @@ fn plan(size: [u32; 2], layers: Option<usize>, left: Option<u64>) -> Plan {
 #[test]
 fn an_image_that_does_not_fit_is_refused_before_it_is_made() {
     let needed = |side, layers| match check_picture(&plan([side; 2], layers, Some(1 << 20))) {
-        Err(RenderError::Memory { short: Short { needed, left: 0x10_0000, limit: Some(0x10_0000) }, .. }) => needed,
+        Err(RenderError::Memory { short: OverBudget { needed, left: 0x10_0000, limit: Some(0x10_0000) }, .. }) => {
+            needed
+        }
         found => panic!("{found:?}"),
     };
     assert_eq!(needed(60_000, None), 43_200_000_000);

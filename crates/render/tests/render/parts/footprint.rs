@@ -1,5 +1,5 @@
 use glam::{Vec2, Vec3};
-use lightmesh_layout::constants::LEAST_FOOTPRINT_COSINE;
+use lightmesh_layout::constants::MIN_FOOTPRINT_COSINE;
 use lightmesh_render::Cone;
 use lightmesh_render::accel::Hit;
 use lightmesh_render::internals::footprint::{axes, curvature};
@@ -30,7 +30,7 @@ fn a_slanted_view_stretches_the_ellipse_along_itself() {
     assert!((across.abs() - Vec2::new(0.0, 0.125)).length() < 1e-6, "{across}");
     // Along the surface, the ellipse is as long as can be counted.
     let [long, _] = lengths(Vec3::X, 0.5);
-    assert!((long - 0.25 / LEAST_FOOTPRINT_COSINE).abs() < 1e-3 * long, "{long}");
+    assert!((long - 0.25 / MIN_FOOTPRINT_COSINE).abs() < 1e-3 * long, "{long}");
 }
 
 #[test]

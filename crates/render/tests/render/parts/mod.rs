@@ -28,7 +28,7 @@ mod view;
 
 use std::path::{Path, PathBuf};
 
-use lightmesh_render::{Footprint, LightGroups, Plan};
+use lightmesh_render::{BytesPerRay, LightGroups, Plan};
 
 /// Libraries without a test harness, so that each is compiled once: a test beside their code would never run.
 const WITHOUT_TESTS: [&str; 3] = ["render", "scene", "image"];
@@ -75,6 +75,6 @@ fn plain(size: [u32; 2], lights: LightGroups, left: Option<u64>) -> Plan {
         left,
         kept: 0,
         reserved: 0,
-        footprint: Footprint::default(),
+        bytes_per_ray: BytesPerRay::default(),
     }
 }

@@ -4,8 +4,8 @@ use lightmesh_render::internals::antialiasing::Antialiasing;
 use lightmesh_render::internals::passes::Chosen;
 use lightmesh_render::internals::probes::ROW;
 use lightmesh_render::{
-    Acceleration, Filter, GivenPoints, Job, LightGroups, Lookup, Mode, Plan, PreparedScene, RenderError, Sampling,
-    Settings, Step, Unobserved,
+    Acceleration, Filter, GivenPoints, LightGroups, Lookup, Mode, Plan, PreparedScene, RenderContext, RenderError,
+    Sampling, Settings, Step, Unobserved,
 };
 use lightmesh_scene::LightKind;
 use lightmesh_testkit::pile;
@@ -64,7 +64,7 @@ impl Way {
         let Way { settings, scene, samples } = self;
         let technique = Chosen::new(scene, settings, scene.geometry.bounds)?;
         let lights = LightGroups { lights: LIGHTS, at_once };
-        let footprint = technique.footprint(lights.held() as u64);
+        let bytes_per_ray = technique.bytes_per_ray(lights.held() as u64);
         let (size, layers) = (settings.size, Some(LIGHTS));
         let plan = Plan {
             antialiasing: samples.clone(),
@@ -72,12 +72,12 @@ impl Way {
             coverage: true,
             layers,
             compositing: true,
-            footprint,
+            bytes_per_ray,
             ..plain(size, lights, left)
         };
-        let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
-        let (mut picture, rows) = technique.picture(&job, &plan)?;
-        assert_eq!(job.work.done(), job.work.total(), "{settings:?}: progress");
+        let context = RenderContext::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
+        let (mut picture, rows) = technique.picture(&context, &plan)?;
+        assert_eq!(context.work.done(), context.work.total(), "{settings:?}: progress");
         let layers = picture.layers.take().unwrap();
         if let Some(samples) = samples {
             // A pixel is covered by samples: those with a depth by some, those without by none.
@@ -131,12 +131,12 @@ fn bands_of_given_points_change_nothing() {
         let settings = &way.settings;
         let technique = Chosen::new(&scene, settings, points.bounds).unwrap();
         let lights = LightGroups { lights: LIGHTS, at_once: usize::MAX };
-        let footprint = technique.footprint(LIGHTS as u64);
+        let bytes_per_ray = technique.bytes_per_ray(LIGHTS as u64);
         let size = [ROW, points.rows()];
         let baked = |left| {
-            let plan = Plan { footprint, ..plain(size, lights, left) };
-            let job = Job::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
-            technique.baked(&job, &plan, &points)
+            let plan = Plan { bytes_per_ray, ..plain(size, lights, left) };
+            let context = RenderContext::new(&Unobserved, Sampling { samples: 9, seed: 0, spread: true });
+            technique.baked(&context, &plan, &points)
         };
         let (whole, rows) = baked(None).unwrap();
         assert_eq!(rows, points.rows());
@@ -159,9 +159,9 @@ fn memory_does_not_grow_with_lights() {
         let technique = Chosen::new(&scene, &settings, scene.geometry.bounds).unwrap();
         for lights in [1, 4, 16, 64, 256] {
             let groups = LightGroups { lights, at_once: technique.lights_at_once() };
-            let footprint = technique.footprint(groups.held() as u64);
-            assert!(footprint.host.max(footprint.device) <= most, "{mode:?} {lookup:?}: {footprint:?}");
-            assert!(footprint.host.min(footprint.device) >= 4, "{mode:?} {lookup:?}: {footprint:?}");
+            let bytes_per_ray = technique.bytes_per_ray(groups.held() as u64);
+            assert!(bytes_per_ray.host.max(bytes_per_ray.device) <= most, "{mode:?} {lookup:?}: {bytes_per_ray:?}");
+            assert!(bytes_per_ray.host.min(bytes_per_ray.device) >= 4, "{mode:?} {lookup:?}: {bytes_per_ray:?}");
         }
     }
 }

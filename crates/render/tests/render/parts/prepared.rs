@@ -1,6 +1,6 @@
 use glam::Vec3;
 use lightmesh_memory::Budget;
-use lightmesh_render::internals::prepared::{BYTES_TO_BUILD, middle_and_reach};
+use lightmesh_render::internals::prepared::{BYTES_TO_BUILD, center_and_sun_distance};
 use lightmesh_render::{Acceleration, PreparedGeometry, RenderError, Unobserved};
 use lightmesh_scene::{Bounds, Geometry, Mesh};
 
@@ -11,7 +11,7 @@ fn suns_are_beyond_all_corners_and_stay_while_bounds_change_little() {
         [([-1.0; 3], [1.0; 3]), ([100.0, 0.0, -3.0], [101.0, 1e-3, 7.0]), ([1e6, -4.0, 5.0], [1e6 + 8.0, 1.0, 9.0])]
     {
         let bounds = bounds(min, max);
-        let (middle, far) = middle_and_reach(&bounds);
+        let (middle, far) = center_and_sun_distance(&bounds);
         for corner in 0..8 {
             let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
             let distance = Vec3::from([0, 1, 2].map(pick)).distance(middle);
@@ -19,8 +19,8 @@ fn suns_are_beyond_all_corners_and_stay_while_bounds_change_little() {
         }
         assert!(far <= 3.001 * bounds.diagonal(), "{bounds:?}: {far}");
     }
-    let park = middle_and_reach(&bounds([-90.0, 0.0, -90.0], [90.0, 30.0, 90.0]));
-    let with_a_ball = middle_and_reach(&bounds([-90.0, 0.0, -90.0], [93.0, 30.0, 91.0]));
+    let park = center_and_sun_distance(&bounds([-90.0, 0.0, -90.0], [90.0, 30.0, 90.0]));
+    let with_a_ball = center_and_sun_distance(&bounds([-90.0, 0.0, -90.0], [93.0, 30.0, 91.0]));
     assert_eq!(park, with_a_ball);
 }
 

@@ -39,7 +39,7 @@ const BYTES_AT_ONCE: usize = 256 << 20;
 /// Bytes of the layers of a light in a pixel.
 const BYTES: usize = 16;
 /// More suns at a time hardly save anything.
-const MOST_AT_ONCE: usize = 64;
+const MAX_AT_ONCE: usize = 64;
 
 /// Computes the hours of direct sun and writes their files; returns what was done.
 pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context) -> Result<String, Error> {
@@ -86,7 +86,7 @@ impl SunHours {
         (settings.aa, settings.transparent, settings.partial) = (Some(1), false, false);
         let camera = settings.camera.clone().unwrap_or_else(|| prepared.scene.cameras[0].clone());
         let [width, height] = settings.crop.map_or(settings.size, |crop| crop.size).map(|side| side as usize);
-        let at_once = (BYTES_AT_ONCE / (BYTES * width * height).max(1)).clamp(1, MOST_AT_ONCE);
+        let at_once = (BYTES_AT_ONCE / (BYTES * width * height).max(1)).clamp(1, MAX_AT_ONCE);
         // Parts of about the same size.
         let at_once = suns.len().div_ceil(suns.len().div_ceil(at_once).max(1)).max(1);
         let (mut seen, mut hours) = (None, vec![0.0_f64; width * height]);

@@ -4,7 +4,7 @@ use glam::Vec3;
 use lightmesh_scene::{Camera, Projection};
 
 /// Surfaces that are seen from the side show more than can be told from the middle of a pixel: smaller cosines count as this.
-const LEAST_COSINE: f32 = 0.02;
+const MIN_COSINE: f32 = 0.02;
 
 /// The pixels of an image of some size.
 pub(super) struct PixelGrid {
@@ -43,12 +43,12 @@ impl PixelGrid {
     pub(super) fn area(&self, [column, row]: [u32; 2], depth: f32, normal: Vec3) -> f32 {
         let across = self.pitch * self.pitch;
         if !self.is_perspective {
-            return across / normal.dot(self.forward).abs().max(LEAST_COSINE);
+            return across / normal.dot(self.forward).abs().max(MIN_COSINE);
         }
         let [x, y] = [column as f32 - self.middle[0], self.middle[1] - row as f32];
         let way = self.forward + self.pitch * (x * self.right + y * self.up);
         let length = way.length();
         let solid_angle = across / (length * length * length);
-        depth * depth * solid_angle / (normal.dot(way).abs() / length).max(LEAST_COSINE)
+        depth * depth * solid_angle / (normal.dot(way).abs() / length).max(MIN_COSINE)
     }
 }

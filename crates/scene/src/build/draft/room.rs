@@ -1,6 +1,6 @@
 //! The memory and the indices that a draft has room for.
 
-use lightmesh_memory::Short;
+use lightmesh_memory::OverBudget;
 
 use super::Draft;
 use crate::LoadError;
@@ -24,7 +24,7 @@ impl Draft {
             Ok(())
         } else {
             let (needed, limit) = (room.bytes(), self.access.budget.limit());
-            Err(self.out_of_memory(vertices, triangles, Short { needed, left: 0, limit }))
+            Err(self.out_of_memory(vertices, triangles, OverBudget { needed, left: 0, limit }))
         }
     }
 
@@ -46,7 +46,7 @@ impl Draft {
         })
     }
 
-    fn out_of_memory(&self, vertices: usize, triangles: usize, short: Short) -> LoadError {
+    fn out_of_memory(&self, vertices: usize, triangles: usize, short: OverBudget) -> LoadError {
         LoadError::Memory {
             path: self.path.clone(),
             what: format!("{vertices} vertices and {triangles} triangles"),

@@ -1,7 +1,7 @@
 //! Vertices with several normals become several vertices.
 
 use glam::Vec3;
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 
 use super::{buckets::Buckets, error::Unsmooth, steps::count_step};
 use crate::Position;
@@ -50,7 +50,7 @@ pub(super) fn split<P: Position>(
 }
 
 /// Makes room for more vertices, and for normals.
-fn grow<P: Position>(mesh: &mut LoadedMesh<P>, added: usize, budget: &Budget) -> Result<(), Short> {
+fn grow<P: Position>(mesh: &mut LoadedMesh<P>, added: usize, budget: &Budget) -> Result<(), OverBudget> {
     fn bytes<T>(values: &[T]) -> u64 {
         if values.is_empty() { 0 } else { size_of::<T>() as u64 }
     }

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, guess_format};
 
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 
 use crate::Texture;
 
@@ -34,7 +34,7 @@ pub enum Undecodable {
         /// Columns and rows.
         size: [u32; 2],
         /// What there is.
-        short: Short,
+        short: OverBudget,
     },
 }
 

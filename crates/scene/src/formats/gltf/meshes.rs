@@ -25,7 +25,7 @@ use super::{
 use crate::build::draft::Draft;
 use crate::build::mesh_part::Room;
 use crate::model::animation::parts::{Hold, Shape};
-use crate::model::instances::MOST_INSTANCED;
+use crate::model::instances::MAX_INSTANCED;
 use crate::model::transforms::mirrors;
 use crate::{Affine, LoadError, MeshPart, OwnedPositions};
 
@@ -192,7 +192,7 @@ impl<'a> Meshes<'a> {
         places.retain(|&mesh, &mut places| draft.shares(places, triangles(mesh)));
         // If there are too many to be numbered, there is no room for copies either.
         let all = places.iter().map(|(&mesh, &places)| places.saturating_mul(triangles(mesh)));
-        let can_be_numbered = all.fold(0, usize::saturating_add) < MOST_INSTANCED;
+        let can_be_numbered = all.fold(0, usize::saturating_add) < MAX_INSTANCED;
         Ok(if can_be_numbered { places.into_keys().collect() } else { HashSet::new() })
     }
 

@@ -77,13 +77,13 @@ fn corner(word: &[u8], counts: Counts, odd: &mut impl FnMut(usize, &'static str,
 
 /// An integer of at most 18 digits; no index has more.
 fn integer(text: &[u8]) -> Option<i64> {
-    const MOST_DIGITS: usize = 18;
+    const MAX_DIGITS: usize = 18;
     let (negative, digits) = match text {
         [b'-', digits @ ..] => (true, digits),
         [b'+', digits @ ..] => (false, digits),
         digits => (false, digits),
     };
-    if digits.is_empty() || digits.len() > MOST_DIGITS {
+    if digits.is_empty() || digits.len() > MAX_DIGITS {
         return None;
     }
     let mut number = 0;

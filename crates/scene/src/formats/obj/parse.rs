@@ -20,7 +20,7 @@ use crate::formats::vertices::{Corner, Vertices};
 use crate::{LoadError, Objects};
 
 /// Maximum number of values read from a position: three coordinates and a colour.
-const MOST_NUMBERS: usize = 6;
+const MAX_NUMBERS: usize = 6;
 
 /// First words of positions, texture coordinates and normals.
 const POINTS: [&[u8]; 3] = [b"v", b"vt", b"vn"];
@@ -177,7 +177,7 @@ impl Parser {
     fn position(&mut self, rest: &[u8]) -> Result<(), Fault> {
         let ([x, y, z, r, g, b], count) = self.numbers(b"v", rest, 3)?;
         let Points { positions, colors, .. } = &mut self.points;
-        if count == MOST_NUMBERS {
+        if count == MAX_NUMBERS {
             colors.resize(positions.len(), Vec3::NAN);
             colors.push(DVec3::new(r, g, b).as_vec3());
         } else if !colors.is_empty() {
@@ -268,12 +268,12 @@ impl Parser {
 
     /// The numbers of a line up to a comment, padded with zeros, and how many there are: at least `least`. What follows them is ignored;
     /// but a second or third word that is no number must be damage.
-    fn numbers(&mut self, word: &[u8], rest: &[u8], least: usize) -> Result<([f64; MOST_NUMBERS], usize), Fault> {
+    fn numbers(&mut self, word: &[u8], rest: &[u8], least: usize) -> Result<([f64; MAX_NUMBERS], usize), Fault> {
         const REMEDY: &str = "correct the line or export the file again";
         const NEEDED: usize = 3;
-        let mut numbers = [0.0; MOST_NUMBERS];
+        let mut numbers = [0.0; MAX_NUMBERS];
         let mut count = 0;
-        for text in words(rest).take_while(|word| word[0] != b'#').take(MOST_NUMBERS) {
+        for text in words(rest).take_while(|word| word[0] != b'#').take(MAX_NUMBERS) {
             if let Some(number) = number(text) {
                 numbers[count] = number;
             } else if let Some(number) = odd_number(text) {

@@ -20,15 +20,15 @@ use crate::Up;
 use crate::model::colors::luminance;
 
 /// Regions are found in a mean of the image with no more columns than this.
-const MOST_COLUMNS: u32 = 512;
+const MAX_COLUMNS: u32 = 512;
 /// What is bright, in means over all directions.
 const CONTRAST: f32 = 4.0;
 /// How much brighter than around it a region is.
 const EDGE: f32 = 2.0;
 /// A region gives at least this share of all light.
-const LEAST_SHARE: f32 = 0.01;
+const MIN_SHARE: f32 = 0.01;
 /// Number of lights at most.
-const MOST_LIGHTS: usize = 8;
+const MAX_LIGHTS: usize = 8;
 /// The radius of a disc that is not halved, radians.
 const SMALL: f32 = 0.05;
 /// How far the surroundings of a region reach, texels.
@@ -71,7 +71,7 @@ impl Environment {
         let image = Image::of(&self);
         let mut pieces: Vec<Piece> = image.regions().into_iter().map(Piece::of).collect();
         pieces.sort_by(|a, b| b.strength().total_cmp(&a.strength()));
-        pieces.truncate(MOST_LIGHTS);
+        pieces.truncate(MAX_LIGHTS);
         if pieces.is_empty() {
             return self;
         }
@@ -89,8 +89,8 @@ impl Environment {
 
 impl Image {
     fn of(environment: &Environment) -> Image {
-        let coarse = environment.levels().iter().find(|level| level.size[0] <= MOST_COLUMNS);
-        let (size, texels) = match coarse.filter(|_| environment.size[0] > MOST_COLUMNS) {
+        let coarse = environment.levels().iter().find(|level| level.size[0] <= MAX_COLUMNS);
+        let (size, texels) = match coarse.filter(|_| environment.size[0] > MAX_COLUMNS) {
             Some(level) => (level.size, level.texels.clone()),
             None => (environment.size, environment.levels.image.clone()),
         };
@@ -137,7 +137,7 @@ impl Image {
                 }
                 next += 1;
             }
-            regions.extend(self.region(members, &is_bright, LEAST_SHARE * all));
+            regions.extend(self.region(members, &is_bright, MIN_SHARE * all));
         }
         regions
     }
@@ -166,7 +166,7 @@ impl Image {
 
 /// 3. Pieces that are halved until there are enough.
 fn halved(mut pieces: Vec<Piece>) -> Vec<Piece> {
-    while pieces.len() < MOST_LIGHTS {
+    while pieces.len() < MAX_LIGHTS {
         let largest = (0..pieces.len()).max_by(|&a, &b| pieces[a].measure().total_cmp(&pieces[b].measure()));
         let Some(largest) = largest.filter(|&largest| pieces[largest].measure() > 0.0) else { break };
         let piece = pieces.swap_remove(largest);

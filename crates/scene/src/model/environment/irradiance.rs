@@ -10,7 +10,7 @@ use super::levels;
 use super::panorama::Environment;
 
 /// Irradiance changes so slowly that it is computed from a mean with no more columns than this.
-const MOST_COLUMNS: u32 = 256;
+const MAX_COLUMNS: u32 = 256;
 
 impl Environment {
     /// The mean radiance over all directions, without what is lights.
@@ -38,8 +38,8 @@ impl Environment {
 
     /// The integrals of radiance times weights over all directions.
     fn integrals<const N: usize>(&self, weights: impl Fn(DVec3) -> [f64; N]) -> [DVec3; N] {
-        let coarse = self.levels().iter().find(|level| level.size[0] <= MOST_COLUMNS);
-        let (size, texels) = match coarse.filter(|_| self.size[0] > MOST_COLUMNS) {
+        let coarse = self.levels().iter().find(|level| level.size[0] <= MAX_COLUMNS);
+        let (size, texels) = match coarse.filter(|_| self.size[0] > MAX_COLUMNS) {
             Some(level) => (level.size, &level.texels),
             None => (self.size, &self.levels.image),
         };

@@ -12,7 +12,7 @@ use crate::model::colors::luminance;
 /// How far from the brightest texel the sun of an image may reach, degrees: it is seen through haze, and blurred by lenses.
 const HALO: f32 = 4.0;
 /// A sun gives at least this share of the irradiance that faces it.
-const LEAST_SHARE: f32 = 0.1;
+const MIN_SHARE: f32 = 0.1;
 /// Around a sun, the image is this much darker, at least.
 const CONTRAST: f32 = 10.0;
 
@@ -77,7 +77,7 @@ impl Environment {
             }
         }
         let Some(direction) = middle.try_normalize() else { return self };
-        if luminance(irradiance) < LEAST_SHARE * luminance(self.irradiance(direction)) {
+        if luminance(irradiance) < MIN_SHARE * luminance(self.irradiance(direction)) {
             return self;
         }
 

@@ -40,7 +40,7 @@ const VFOV: f32 = 60.0;
 
 /// A camera from outside that sees an interior's walls from behind, or less than this share of its triangles, shows nothing of it.
 const BACKS: f32 = 0.5;
-const LEAST_SEEN: f32 = 0.1;
+const MIN_SEEN: f32 = 0.1;
 /// Triangles of which it is found out whether they are seen.
 const ASKED: usize = 1024;
 
@@ -127,7 +127,7 @@ fn hides(sight: &Sight, camera: &Camera) -> bool {
         let first = sight.first(camera.position, center - camera.position);
         first.is_some_and(|first| first.triangle == triangle as u32 || first.distance >= 0.999)
     };
-    ((0..asked).filter(is_seen).count() as f32) < LEAST_SEEN * asked as f32
+    ((0..asked).filter(is_seen).count() as f32) < MIN_SEEN * asked as f32
 }
 
 /// The view of all places and horizontal directions that is longest: the largest mean logarithm of the distance of what is seen.

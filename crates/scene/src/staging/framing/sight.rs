@@ -14,7 +14,7 @@ const LEAF: usize = 4;
 /// Ranges of triangles from this size on are split by several threads.
 const PARALLEL: usize = 1 << 14;
 /// Stands for a component of a direction that is smaller: its inverse is finite.
-const LEAST_COMPONENT: f32 = 1e-20;
+const MIN_COMPONENT: f32 = 1e-20;
 /// By how much a ray leaves a box later than computed: several roundings.
 const LATER: f32 = 1.0 + 1e-6;
 
@@ -69,7 +69,7 @@ impl<'a> Sight<'a> {
 
     /// The first triangle on the way from `origin` along `direction`; the smallest index of several.
     pub fn first(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
-        let usable = |d: f32| if d.abs() < LEAST_COMPONENT { LEAST_COMPONENT } else { d };
+        let usable = |d: f32| if d.abs() < MIN_COMPONENT { MIN_COMPONENT } else { d };
         let inverse = direction.map(usable).recip();
         let mut nearest = Seen { distance: f32::INFINITY, triangle: u32::MAX };
         // One sibling waits on every level of at most 31.

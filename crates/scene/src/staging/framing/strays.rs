@@ -12,7 +12,7 @@ use crate::{Bounds, Mesh};
 /// Cells along the longest edge.
 const CELLS: usize = 64;
 /// Cells that triangles may cover together; beyond, nothing is a stray.
-const MOST_COVERED: usize = 1 << 24;
+const MAX_COVERED: usize = 1 << 24;
 /// Strays are found in rounds, each around what the one before has left.
 const ROUNDS: usize = 4;
 /// A stray's diagonal is at most this share of that of the largest cluster.
@@ -85,7 +85,7 @@ fn without_strays(mesh: &Mesh, bounds: &Bounds, counts: Option<&[bool]>) -> Opti
     for triangle in asked() {
         let [least, most] = grid.cells_of(mesh.corners(triangle));
         covered += (0..3).map(|axis| most[axis] - least[axis] + 1).product::<usize>();
-        if covered > MOST_COVERED {
+        if covered > MAX_COVERED {
             return None;
         }
         grid.each(least, most, |cell| labels[cell] = OCCUPIED);

@@ -23,8 +23,8 @@ use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use rayon::prelude::*;
 
 use super::tree::{Bvh, Node};
-use crate::accel::approach::{self, Approach};
-use crate::accel::distinct::distinct;
+use crate::accel::deduplicate::deduplicate;
+use crate::accel::ray_clamp::{self, RayClamp};
 use crate::accel::{Coverage, Instanced, ShapeTree, Triangle};
 pub use work::{LEVELS, Work};
 
@@ -35,7 +35,7 @@ pub(super) fn build(triangles: &[Triangle]) -> Bvh {
     let (nodes, triangles) = level(&usable(triangles));
     Bvh {
         depth: depth(&nodes),
-        approach: Approach::around(&triangles),
+        ray_clamp: RayClamp::around(&triangles),
         nodes: nodes.into(),
         triangles: triangles.into(),
         shapes: Arc::default(),
@@ -75,7 +75,7 @@ pub(super) fn build_levels(own: &[Triangle], stored: &[Triangle], instances: &[I
     let mut held = usable(own);
     held.extend(holders);
     let (mut nodes, mut triangles) = level(&held);
-    let (depth_of_scene, approach) = (depth(&nodes), Approach::around(&triangles));
+    let (depth_of_scene, ray_clamp) = (depth(&nodes), RayClamp::around(&triangles));
 
     // 3. All in one sequence.
     let (mut trees, mut shape_depth) = (Vec::with_capacity(shapes.len()), 0);
@@ -97,7 +97,7 @@ pub(super) fn build_levels(own: &[Triangle], stored: &[Triangle], instances: &[I
     let instances: Vec<Instanced> = instances.iter().map(place).collect();
     Bvh {
         depth: depth_of_scene,
-        approach,
+        ray_clamp,
         nodes: nodes.into(),
         triangles: triangles.into(),
         shapes: shapes.into_iter().zip(trees).collect(),
@@ -110,7 +110,7 @@ pub(super) fn build_levels(own: &[Triangle], stored: &[Triangle], instances: &[I
 
 /// What a tree is built over.
 fn usable(triangles: &[Triangle]) -> Vec<Triangle> {
-    distinct(triangles).into_iter().map(|at| triangles[at as usize]).collect()
+    deduplicate(triangles).into_iter().map(|at| triangles[at as usize]).collect()
 }
 
 /// The nodes of a tree and its triangles in the order of leaves.
@@ -168,7 +168,7 @@ fn enclose(nodes: &mut [Node], triangles: &[Triangle]) {
         let boxes: Vec<_> = children(&nodes[index])
             .map(|(slot, child)| match child {
                 Child::Inner(child) => (slot, bounds[child]),
-                Child::Leaf(range) => (slot, approach::bounds(&triangles[range])),
+                Child::Leaf(range) => (slot, ray_clamp::bounds(&triangles[range])),
             })
             .collect();
         bounds[index] = Bounds::around(boxes.iter().flat_map(|(_, bounds)| [bounds.min, bounds.max]));

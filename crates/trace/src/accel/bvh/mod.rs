@@ -21,7 +21,7 @@ use lightmesh_scene::Instance;
 pub use cost::BvhCost;
 pub use tree::Bvh;
 
-use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle, Visitor};
+use super::{Accelerator, AcceleratorKind, ChunkSink, Coverage, Hit, Ray, Region, ShortSegments, Triangle, Visitor};
 use crate::simd::dispatch;
 
 impl Bvh {
@@ -77,7 +77,7 @@ impl Accelerator for Bvh {
         dispatch!(self.level, simd => walk::short_segments(simd, self, segments, blocked));
     }
 
-    fn search(&self, region: &Region, take: Take) {
+    fn search(&self, region: &Region, take: ChunkSink) {
         dispatch!(self.level, simd => search::search(simd, self, region, take));
     }
 
@@ -89,8 +89,8 @@ impl Accelerator for Bvh {
         "bvh"
     }
 
-    fn form(&self) -> Form<'_> {
-        Form::Bvh(self)
+    fn kind(&self) -> AcceleratorKind<'_> {
+        AcceleratorKind::Bvh(self)
     }
 
     fn memory(&self) -> usize {

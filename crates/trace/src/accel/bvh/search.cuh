@@ -1,7 +1,7 @@
 // The search for all triangles that meet a region through compressed wide nodes: twin of search.rs, where the margin is explained.
 #pragma once
 
-#include "accel/sieve.cuh"
+#include "accel/region_filter.cuh"
 
 // A search in progress: the nodes still to be entered. Those nearest to where the region begins are on top: what hides most is often near.
 struct BvhSearch {
@@ -18,17 +18,19 @@ struct BvhSearch {
 // level, for which there is room.
 DEVICE unsigned search_words(const Bvh &bvh) { return (STACK_OF_ROUNDS + STACK_PER_LEVEL * bvh.depth + 3) / 4 * 4; }
 
-template <class Form>
-DEVICE BvhSearch begin_search(const Bvh &bvh, const Region<Form> &region, unsigned *memory) {
+template <class RegionShape>
+DEVICE BvhSearch begin_search(const Bvh &bvh, const Region<RegionShape> &region, unsigned *memory) {
     if (lane_of_thread() == 0)
         memory[0] = 0;
     __syncwarp();
-    return BvhSearch{memory, bvh.node_count != 0 ? 1u : 0u, octant_of(heading_of(region.form)), memory, 0};
+    return BvhSearch{memory, bvh.node_count != 0 ? 1u : 0u, octant_of(heading_of(region.shape)), memory, 0};
 }
 
-template <class Form>
-DEVICE BvhSearch begin_search_at(const Bvh &bvh, const Region<Form> &region, unsigned *memory, const unsigned *starts, unsigned count) {
-    return count == FROM_ROOT ? begin_search(bvh, region, memory) : BvhSearch{memory, 0, octant_of(heading_of(region.form)), starts, count};
+template <class RegionShape>
+DEVICE BvhSearch begin_search_at(const Bvh &bvh, const Region<RegionShape> &region, unsigned *memory, const unsigned *starts,
+                                 unsigned count) {
+    return count == FROM_ROOT ? begin_search(bvh, region, memory)
+                              : BvhSearch{memory, 0, octant_of(heading_of(region.shape)), starts, count};
 }
 
 DEVICE bool goes_on(const Bvh &, const BvhSearch &search) { return (search.height | search.start_count) != 0; }
@@ -69,8 +71,8 @@ DEVICE Slot load_slot(const BvhNode *node, unsigned slot) {
 }
 
 // Whether there is something in a slot that the region may meet.
-template <class Form>
-DEVICE bool meets_slot(const Region<Form> &region, const Slot &slot) {
+template <class RegionShape>
+DEVICE bool meets_slot(const Region<RegionShape> &region, const Slot &slot) {
     return slot.meta != 0 && meets(region, slot.low, slot.high, 0.0f);
 }
 
@@ -107,8 +109,8 @@ DEVICE Turn next_turn(Search &search, unsigned tallest) {
 }
 
 // One round of a search.
-template <bool SIEVED, class Form>
-DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch &search, unsigned *found, unsigned &count) {
+template <bool FILTERED, class RegionShape>
+DEVICE void next_triangles(const Bvh &bvh, const Region<RegionShape> &region, BvhSearch &search, unsigned *found, unsigned &count) {
     const Turn turn = next_turn(search, STACK_OF_ROUNDS - 4 * STACK_PER_LEVEL);
     const unsigned slot = turn.begins ? turn.slot : turn.slot ^ search.octant;
     bool inner = false;
@@ -125,7 +127,7 @@ DEVICE void next_triangles(const Bvh &bvh, const Region<Form> &region, BvhSearch
     __syncwarp();
     warp_append(inner, child, search.stack, search.height);
     for (unsigned i = 0; i < 3; i++)
-        sieve<SIEVED>(region, bvh.triangles + (first + i), triangles > i, first + i, found, count);
+        filter_by_region<FILTERED>(region, bvh.triangles + (first + i), triangles > i, first + i, found, count);
     __syncwarp();
 }
 
@@ -141,13 +143,13 @@ struct InstancedSearch {
 
 // A node adds at most as many instances as its leaves hold. They are taken off the stack before other nodes of the scene's tree.
 DEVICE unsigned entries_of_search(const InstancedBvh &bvh) {
-    return STACK_OF_INSTANCES + MOST_HELD + (STACK_PER_LEVEL * bvh.depth + 3) / 4 * 4;
+    return STACK_OF_INSTANCES + MAX_HELD + (STACK_PER_LEVEL * bvh.depth + 3) / 4 * 4;
 }
 
 DEVICE unsigned search_words(const InstancedBvh &bvh) { return 2 * entries_of_search(bvh); }
 
-template <class Form>
-DEVICE InstancedSearch begin_search(const InstancedBvh &bvh, const Region<Form> &, unsigned *memory) {
+template <class RegionShape>
+DEVICE InstancedSearch begin_search(const InstancedBvh &bvh, const Region<RegionShape> &, unsigned *memory) {
     unsigned *owners = memory + entries_of_search(bvh);
     if (lane_of_thread() == 0)
         memory[0] = owners[0] = 0;
@@ -155,9 +157,9 @@ DEVICE InstancedSearch begin_search(const InstancedBvh &bvh, const Region<Form> 
     return InstancedSearch{memory, owners, bvh.node_count != 0 ? 1u : 0u, memory, 0};
 }
 
-template <class Form>
-DEVICE InstancedSearch begin_search_at(const InstancedBvh &bvh, const Region<Form> &region, unsigned *memory, const unsigned *starts,
-                                       unsigned count) {
+template <class RegionShape>
+DEVICE InstancedSearch begin_search_at(const InstancedBvh &bvh, const Region<RegionShape> &region, unsigned *memory,
+                                       const unsigned *starts, unsigned count) {
     if (count == FROM_ROOT)
         return begin_search(bvh, region, memory);
     return InstancedSearch{memory, memory + entries_of_search(bvh), 0, starts, count};
@@ -178,12 +180,13 @@ DEVICE void place_slot(const Instanced *instance, Slot &slot) {
 }
 
 // The same round; what is held in the scene's leaves goes onto the stack, the nodes of shapes with the numbers of their places.
-template <bool SIEVED, class Form>
-DEVICE void next_triangles(const InstancedBvh &bvh, const Region<Form> &region, InstancedSearch &search, unsigned *found, unsigned &count) {
-    const Turn turn = next_turn(search, STACK_OF_INSTANCES - 4 * MOST_HELD);
+template <bool FILTERED, class RegionShape>
+DEVICE void next_triangles(const InstancedBvh &bvh, const Region<RegionShape> &region, InstancedSearch &search, unsigned *found,
+                           unsigned &count) {
+    const Turn turn = next_turn(search, STACK_OF_INSTANCES - 4 * MAX_HELD);
     const unsigned owner = turn.active && !turn.begins ? search.owners[turn.entry] : 0;
     const Instanced *instance = owner != 0 ? bvh.instances + (owner - 1) : nullptr;
-    const Vec3 heading = heading_of(region.form);
+    const Vec3 heading = heading_of(region.shape);
     const unsigned octant = octant_of(instance != nullptr ? placed_vector(instance->back, heading) : heading);
     const unsigned slot = turn.begins ? turn.slot : turn.slot ^ octant;
     bool inner = false;
@@ -212,15 +215,15 @@ DEVICE void next_triangles(const InstancedBvh &bvh, const Region<Form> &region, 
         warp_append(enters, held, search.owners, owned);
         warp_append(enters, enters ? __ldg(&bvh.instances[held - 1].root) : 0, search.stack, search.height);
         const unsigned place = has ? noted_place(Part{bvh, bvh.coverage, instance}, first + i) : 0;
-        sieve<SIEVED>(region, Placed{stored, instance}, has && held == 0, place, found, count);
+        filter_by_region<FILTERED>(region, Placed{stored, instance}, has && held == 0, place, found, count);
     }
     __syncwarp();
 }
 
-// Finds up to MOST_STARTS boxes that hold all triangles that a region may meet: the root's children, then, as long as there is room,
+// Finds up to MAX_SEARCH_ROOTS boxes that hold all triangles that a region may meet: the root's children, then, as long as there is room,
 // children in place of their parents. Returns their number. `list` has twice WARP words.
-template <class Tree, class Form>
-DEVICE unsigned find_starts_in(const Tree &bvh, const Region<Form> &region, unsigned *list) {
+template <class Tree, class RegionShape>
+DEVICE unsigned find_starts_in(const Tree &bvh, const Region<RegionShape> &region, unsigned *list) {
     const unsigned lane = lane_of_thread(), slot = lane % 8;
     // A start holds a node's number in 28 bits.
     if (bvh.node_count >> 28 != 0)
@@ -238,7 +241,7 @@ DEVICE unsigned find_starts_in(const Tree &bvh, const Region<Form> &region, unsi
             met = meets_slot(region, box);
             leaf = !box.inner;
         }
-        if (count - opened + __popc(__ballot_sync(ALL_LANES, met)) > MOST_STARTS)
+        if (count - opened + __popc(__ballot_sync(ALL_LANES, met)) > MAX_SEARCH_ROOTS)
             return count;
         // Close the gaps and append the children.
         const unsigned low = list[lane], high = list[WARP + lane], before = count;
@@ -264,12 +267,12 @@ DEVICE unsigned find_starts_in(const Tree &bvh, const Region<Form> &region, unsi
 }
 
 // Puts the starts of a shaft in order, the nearest last: a search takes those first.
-template <class Tree, class Form>
-DEVICE unsigned sorted_starts(const Tree &bvh, const Region<Form> &region, unsigned *list, unsigned count) {
-    if (!Form::SLANTED || count == FROM_ROOT)
+template <class Tree, class RegionShape>
+DEVICE unsigned sorted_starts(const Tree &bvh, const Region<RegionShape> &region, unsigned *list, unsigned count) {
+    if (!RegionShape::SLANTED || count == FROM_ROOT)
         return count;
     const unsigned lane = lane_of_thread();
-    const Vec3 heading = heading_of(region.form);
+    const Vec3 heading = heading_of(region.shape);
     unsigned own[2] = {0, 0}, ranks[2] = {0, 0};
     float ways[2] = {0.0f, 0.0f};
     UNROLL
@@ -298,13 +301,13 @@ DEVICE unsigned sorted_starts(const Tree &bvh, const Region<Form> &region, unsig
     return count;
 }
 
-template <class Form>
-DEVICE unsigned find_starts(const Bvh &bvh, const Region<Form> &region, unsigned *list) {
+template <class RegionShape>
+DEVICE unsigned find_starts(const Bvh &bvh, const Region<RegionShape> &region, unsigned *list) {
     return sorted_starts(bvh, region, list, find_starts_in(bvh, region, list));
 }
 
 // In the scene's tree.
-template <class Form>
-DEVICE unsigned find_starts(const InstancedBvh &bvh, const Region<Form> &region, unsigned *list) {
+template <class RegionShape>
+DEVICE unsigned find_starts(const InstancedBvh &bvh, const Region<RegionShape> &region, unsigned *list) {
     return sorted_starts(bvh, region, list, find_starts_in(bvh, region, list));
 }

@@ -14,24 +14,24 @@ use lightmesh_layout::constants::{BVH_MARGIN, INSTANCE_MARGIN};
 use super::tree::{Bvh, Node};
 use super::walk::{Guide, Stack, descend, octant_of, planes};
 use crate::accel::region::Boxes;
-use crate::accel::sieve::{Sieve, Take};
+use crate::accel::region_filter::{ChunkSink, RegionFilter};
 use crate::accel::{Instanced, Region, Triangle};
 
 /// Hands over all triangles whose bounding boxes the region may meet; those of a shaft roughly by their distance from where it begins.
 #[simd]
-pub(super) fn search<S: Simd>(simd: S, bvh: &Bvh, region: &Region, take: Take) {
-    let mut search = Search { simd, bvh, region, sieve: Sieve::new(simd, region, take) };
+pub(super) fn search<S: Simd>(simd: S, bvh: &Bvh, region: &Region, take: ChunkSink) {
+    let mut search = Search { simd, bvh, region, filter: RegionFilter::new(simd, region, take) };
     if descend(bvh, 0, octant_of(region.heading()), Stack::new(bvh.depth).entries(), &mut search) {
-        search.sieve.finish();
+        search.filter.finish();
     }
 }
 
-/// Passes to a sieve the triangles of all leaves whose boxes the region may meet.
+/// Passes to a filter the triangles of all leaves whose boxes the region may meet.
 struct Search<'a, S: Simd> {
     simd: S,
     bvh: &'a Bvh,
     region: &'a Region,
-    sieve: Sieve<'a, S>,
+    filter: RegionFilter<'a, S>,
 }
 
 impl<S: Simd> Guide for Search<'_, S> {
@@ -43,7 +43,7 @@ impl<S: Simd> Guide for Search<'_, S> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
         match triangle.instance() {
-            None => self.sieve.take(triangle),
+            None => self.filter.take(triangle),
             Some(number) => self.enter(&self.bvh.instances[number]),
         }
     }
@@ -53,9 +53,9 @@ impl<S: Simd> Search<'_, S> {
     /// Passes on the triangles of an instance in the same way, where they are in the scene.
     #[inline(never)]
     fn enter(&mut self, instance: &Instanced) -> bool {
-        let Search { simd, bvh, region, sieve } = self;
+        let Search { simd, bvh, region, filter } = self;
         let octant = octant_of(instance.back.vector(region.heading()));
-        let mut search = ShapeSearch { simd: *simd, region, instance, sieve };
+        let mut search = ShapeSearch { simd: *simd, region, instance, filter };
         descend(bvh, instance.tree.root, octant, Stack::new(bvh.shape_depth).entries(), &mut search)
     }
 }
@@ -65,7 +65,7 @@ struct ShapeSearch<'a, 'b, S: Simd> {
     simd: S,
     region: &'a Region,
     instance: &'a Instanced,
-    sieve: &'a mut Sieve<'b, S>,
+    filter: &'a mut RegionFilter<'b, S>,
 }
 
 impl<S: Simd> Guide for ShapeSearch<'_, '_, S> {
@@ -76,7 +76,7 @@ impl<S: Simd> Guide for ShapeSearch<'_, '_, S> {
 
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
-        self.sieve.take(&self.instance.triangle(triangle))
+        self.filter.take(&self.instance.triangle(triangle))
     }
 }
 

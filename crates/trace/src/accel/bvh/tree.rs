@@ -7,7 +7,7 @@ use fearless_simd::Level;
 use glam::Vec3;
 pub(super) use obvhs::cwbvh::node::CwBvhNode as Node;
 
-use crate::accel::approach::Approach;
+use crate::accel::ray_clamp::RayClamp;
 use crate::accel::{Coverage, Instanced, ShapeTree, Triangle};
 
 /// A compressed wide bounding volume hierarchy; clones share it.
@@ -25,7 +25,7 @@ pub struct Bvh {
     pub(super) instances: Arc<[Instanced]>,
     /// The most levels of a shape's tree.
     pub(super) shape_depth: usize,
-    pub(super) approach: Approach,
+    pub(super) ray_clamp: RayClamp,
     pub(super) coverage: Coverage,
     pub(super) level: Level,
 }
@@ -81,8 +81,8 @@ impl Bvh {
     }
 
     /// Centre and radius of the sphere of interest.
-    pub fn approach(&self) -> (Vec3, f32) {
-        self.approach.parts()
+    pub fn ray_clamp(&self) -> (Vec3, f32) {
+        self.ray_clamp.parts()
     }
 
     /// The same tree traversed at another SIMD level; every level gives the same bits.

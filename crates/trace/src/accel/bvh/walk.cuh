@@ -17,7 +17,7 @@ struct Slabs {
 
 DEVICE Slabs slabs_of(Vec3 origin, Vec3 direction, float slack) {
     const Vec3 size = abs(direction);
-    const float least = LEAST_COMPONENT * max_element(size);
+    const float least = MIN_COMPONENT * max_element(size);
     const Vec3 inverse = {1.0f / copysignf(larger(size.x, least), direction.x),
                           1.0f / copysignf(larger(size.y, least), direction.y),
                           1.0f / copysignf(larger(size.z, least), direction.z)};

@@ -23,7 +23,7 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 use glam::{Vec3, Vec3A};
-use lightmesh_layout::constants::{BVH_MARGIN, FIRST_INNER, INNER_HITS, LEAST_COMPONENT, ROOT_HIT, TRIANGLE_HITS};
+use lightmesh_layout::constants::{BVH_MARGIN, FIRST_INNER, INNER_HITS, MIN_COMPONENT, ROOT_HIT, TRIANGLE_HITS};
 
 use super::tree::{Bvh, Node};
 use crate::accel::visit::{All, Any, Closest, Short, Visitor};
@@ -55,7 +55,7 @@ pub(super) struct Slabs {
 impl Slabs {
     #[inline(always)]
     pub(super) fn new(origin: Vec3, direction: Vec3, slack: f32) -> Slabs {
-        let least = LEAST_COMPONENT * direction.abs().max_element();
+        let least = MIN_COMPONENT * direction.abs().max_element();
         let direction = direction.abs().max(Vec3::splat(least)).copysign(direction);
         let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(direction.recip()));
         let octant = octant_of(direction);
@@ -74,7 +74,7 @@ pub(super) fn octant_of(direction: Vec3) -> u32 {
 pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut [Hit]) {
     let mut stack = Stack::new(bvh.depth);
     for (hit, ray) in hits.iter_mut().zip(rays) {
-        *hit = bvh.approach.ray(ray).map_or(Hit::MISS, |near| {
+        *hit = bvh.ray_clamp.ray(ray).map_or(Hit::MISS, |near| {
             let mut closest = Closest::new(&near, &bvh.coverage);
             walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
             near.finish(closest.best)
@@ -86,7 +86,7 @@ pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut
 pub(super) fn all_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], take: &mut dyn FnMut(usize, &[Hit])) {
     let (mut stack, mut hits) = (Stack::new(bvh.depth), Vec::new());
     for (number, ray) in rays.iter().enumerate() {
-        let Some(near) = bvh.approach.ray(ray) else { continue };
+        let Some(near) = bvh.ray_clamp.ray(ray) else { continue };
         let mut all = All::new(&near, &bvh.coverage, &mut hits);
         walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut all);
         all.finish(&near, |hits| take(number, hits));
@@ -97,7 +97,7 @@ pub(super) fn all_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], take: &mut dyn
 pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: &mut [bool]) {
     let mut stack = Stack::new(bvh.depth);
     for (occluded, segment) in occluded.iter_mut().zip(segments) {
-        *occluded = bvh.approach.ray(segment).is_some_and(|near| {
+        *occluded = bvh.ray_clamp.ray(segment).is_some_and(|near| {
             let mut any = Any::new(&near, &bvh.coverage);
             walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut any);
             any.hit

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use lightmesh_layout::constants::OPAQUE;
 use lightmesh_layout::geometry::CutTriangle;
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 use lightmesh_scene::{Geometry, Opacity, OpacityChannel, OpacityMode, Texture, TextureUse, Wrap};
 
 use super::{Coverage, Mask, Table};
@@ -24,7 +24,7 @@ impl Coverage {
     ///
     /// # Errors
     /// The number of the texture whose opacities do not fit into the budget.
-    pub fn of(geometry: &Geometry, budget: Budget) -> Result<(Coverage, Vec<u32>), (usize, Short)> {
+    pub fn of(geometry: &Geometry, budget: Budget) -> Result<(Coverage, Vec<u32>), (usize, OverBudget)> {
         let mut masks = Masks { geometry, budget, known: HashMap::new(), least: Vec::new(), table: Table::default() };
         let mut of_materials = Vec::new();
         for material in &geometry.materials {
@@ -76,7 +76,7 @@ struct Masks<'a> {
 
 impl Masks<'_> {
     /// The index of the mask; `None` if nothing is cut out or let through. `reflects`: whether it is seen without any opacity.
-    fn mask(&mut self, opacity: &Opacity, reflects: bool) -> Result<Option<usize>, (usize, Short)> {
+    fn mask(&mut self, opacity: &Opacity, reflects: bool) -> Result<Option<usize>, (usize, OverBudget)> {
         let found = opacity.texture.and_then(|uses| usable(self.geometry, uses));
         // What neither shows nor filters anything is no surface.
         let (cutoff, blends) = match opacity.mode {
@@ -101,7 +101,7 @@ impl Masks<'_> {
         Ok(Some(self.table.masks.len() - 1))
     }
 
-    fn plane(&mut self, index: u32, texture: &Texture, channel: OpacityChannel) -> Result<usize, (usize, Short)> {
+    fn plane(&mut self, index: u32, texture: &Texture, channel: OpacityChannel) -> Result<usize, (usize, OverBudget)> {
         if let Some(&known) = self.known.get(&Some((index, channel))) {
             return Ok(known);
         }

@@ -9,8 +9,8 @@ use super::hash::geometry_hash;
 use super::lattice::{Lattice, cells_between, margin};
 use super::options::{GridError, GridOptions, Levels};
 use super::overlap::triangle_meets_box;
-use crate::accel::approach::Approach;
-use crate::accel::distinct::distinct;
+use crate::accel::deduplicate::deduplicate;
+use crate::accel::ray_clamp::RayClamp;
 use crate::accel::{Coverage, Triangle};
 
 /// Cells per triangle, if there is one level.
@@ -28,12 +28,12 @@ const COPIES: [u64; 2] = [32, 16];
 /// The same for both levels together: where triangles are large, nested grids would repeat them once more.
 const ALL_COPIES: u64 = 64;
 /// Most cells of the outer grid: 512 on each axis.
-const MOST_CELLS: u64 = 1 << 27;
+const MAX_CELLS: u64 = 1 << 27;
 /// Most cells that a ray may cross, the sum of those along the axes: a millisecond for each of a million rays would be too long.
-const MOST_CROSSED: u64 = 1 << 14;
+const MAX_CROSSED: u64 = 1 << 14;
 /// Most references that a requested grid may need: a second's work, or this many per triangle.
-const MOST_REFERENCES: u64 = 1 << 24;
-const MOST_COPIES: u64 = 256;
+const MAX_REFERENCES: u64 = 1 << 24;
+const MAX_COPIES: u64 = 256;
 /// Bytes that a cell takes while the grid is built: where its list begins, twice, and its integer in a vector that grows.
 const CELL_BYTES: u64 = 2 * 8 + 2 * 4;
 /// Bytes that a reference takes at most: with its cell, sorted, and in the flat form with a copy of its triangle.
@@ -42,10 +42,10 @@ const REFERENCE_BYTES: u64 = 16 + 4 + 2 * 4 + size_of::<Triangle>() as u64;
 const TASK: usize = 2048;
 
 pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Grid, GridError> {
-    let usable = distinct(triangles);
+    let usable = deduplicate(triangles);
     let bounds = Bounds::around(usable.iter().flat_map(|&at| triangles[at as usize].corners()));
     let density = if options.levels == Levels::One { DENSITY } else { OUTER_DENSITY };
-    let mut sorter = Sorter { triangles, inner_copies: COPIES[1], margin: margin(Approach::new(&bounds).radius()) };
+    let mut sorter = Sorter { triangles, inner_copies: COPIES[1], margin: margin(RayClamp::new(&bounds).radius()) };
     let dims = match options.dims {
         Some(dims) => dims.into(),
         None => {
@@ -53,8 +53,8 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
             sorter.coarsened(dims, &usable, COPIES[0], |dims| Lattice::new(&bounds, sorter.margin, dims))
         }
     };
-    let (lattice, approach, margin) = frame(&bounds, dims)?;
-    let most = MOST_REFERENCES.max(MOST_COPIES * usable.len() as u64);
+    let (lattice, ray_clamp, margin) = frame(&bounds, dims)?;
+    let most = MAX_REFERENCES.max(MAX_COPIES * usable.len() as u64);
     let candidates = sorter.candidates(&lattice, &usable);
     bounded(candidates, most, "triangle references", dims)?;
     let needed = lattice.len() as u64 * CELL_BYTES + candidates * REFERENCE_BYTES;
@@ -79,23 +79,23 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
         margin,
         cells: cells.into(),
         sources: sources.into(),
-        approach,
+        ray_clamp,
     })
 }
 
 /// Where the cells lie. A loaded grid must get the same frame.
-pub(super) fn frame(bounds: &Bounds, dims: UVec3) -> Result<(Lattice, Approach, f32), GridError> {
+pub(super) fn frame(bounds: &Bounds, dims: UVec3) -> Result<(Lattice, RayClamp, f32), GridError> {
     let cells = dims.to_array().map(u128::from).iter().product::<u128>();
     if cells == 0 {
         return Err(GridError::NoCells { dims: dims.to_array() });
     }
-    bounded(u64::try_from(cells).unwrap_or(u64::MAX), MOST_CELLS, "cells", dims)?;
+    bounded(u64::try_from(cells).unwrap_or(u64::MAX), MAX_CELLS, "cells", dims)?;
     let crossed = dims.to_array().map(u64::from).iter().sum();
-    bounded(crossed, MOST_CROSSED, "cells on the way of a ray", dims)?;
-    let approach = Approach::new(bounds);
-    let margin = margin(approach.radius());
+    bounded(crossed, MAX_CROSSED, "cells on the way of a ray", dims)?;
+    let ray_clamp = RayClamp::new(bounds);
+    let margin = margin(ray_clamp.radius());
     let bounds = if bounds.is_empty() { Bounds::around([Vec3::ZERO]) } else { *bounds };
-    Ok((Lattice::new(&bounds, margin, dims), approach, margin))
+    Ok((Lattice::new(&bounds, margin, dims), ray_clamp, margin))
 }
 
 fn bounded(needed: u64, most: u64, what: &'static str, dims: UVec3) -> Result<(), GridError> {

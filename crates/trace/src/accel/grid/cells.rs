@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{DVec3, Vec3};
 
 use super::lattice::Lattice;
-use crate::accel::approach::Approach;
+use crate::accel::ray_clamp::RayClamp;
 use crate::accel::{Coverage, Triangle};
 
 /// A regular grid of triangles.
@@ -20,7 +20,7 @@ pub struct Grid {
     pub(super) triangles: Arc<[Triangle]>,
     /// The position of each in the list that the grid was built from.
     pub(super) sources: Arc<[u32]>,
-    pub(super) approach: Approach,
+    pub(super) ray_clamp: RayClamp,
     pub(super) coverage: Coverage,
     /// Hash of the list that the grid was built from.
     pub(super) geometry: u64,
@@ -90,8 +90,8 @@ impl Grid {
     }
 
     /// Centre and radius of the sphere of interest.
-    pub fn approach(&self) -> (Vec3, f32) {
-        self.approach.parts()
+    pub fn ray_clamp(&self) -> (Vec3, f32) {
+        self.ray_clamp.parts()
     }
 
     /// The lowest corner of a cell of the outer grid.

@@ -148,7 +148,7 @@ pub fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<G
     let usable = triangles.iter().filter(|triangle| triangle.is_usable());
     let bounds = Bounds::around(usable.flat_map(Triangle::corners));
     let dims = UVec3::new(cells[0] as u32, cells[1] as u32, cells[2] as u32);
-    let (lattice, approach, margin) =
+    let (lattice, ray_clamp, margin) =
         build::frame(&bounds, dims).map_err(|_| GridFault::Corrupted("its size is impossible"))?;
     Ok(Grid {
         triangles: sources.iter().map(|&source| triangles[source as usize]).collect(),
@@ -156,7 +156,7 @@ pub fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<G
         margin,
         cells: cells.into(),
         sources: sources.into(),
-        approach,
+        ray_clamp,
         geometry,
         built_from: header.built_from,
         overruns: 0.into(),

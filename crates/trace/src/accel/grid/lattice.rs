@@ -3,7 +3,7 @@
 //! # How far a walk can err
 //!
 //! Let r be half the longest edge of the box around the triangles and ε = 2⁻²⁴. Ray origins lie within 8 r of its centre
-//! (`approach`), so that every coordinate relative to an origin is below S = 10 r. Planes are multiples of the cell size,
+//! (`ray_clamp`), so that every coordinate relative to an origin is below S = 10 r. Planes are multiples of the cell size,
 //! relative to the grid's corner. On each axis,
 //!
 //! * a reported hit lies up to 9 ε S outside its triangle;

@@ -6,7 +6,7 @@
 #include "accel/ray.cuh"
 
 // Cells of an axis that the walk can tell apart: their numbers are exact in a float, and `bits_of_cell` needs room.
-#define GRID_MOST_CELLS (1u << 22)
+#define GRID_MAX_CELLS (1u << 22)
 // A float around which the floats are the integers, and its bits.
 #define WHOLE_FLOATS 12582912.0f
 #define WHOLE_FLOATS_BITS 0x4b400000u
@@ -89,7 +89,7 @@ DEVICE void march_along(float origin, float direction, float size, float least, 
 
 DEVICE March march_of(const Grid &grid, const Ray &ray) {
     const Vec3 origin = to_single(to_double(ray.origin) - grid.origin), dims = to_float(grid.dims);
-    const float least = LEAST_COMPONENT * max_element(abs(ray.direction));
+    const float least = MIN_COMPONENT * max_element(abs(ray.direction));
     March m;
     march_along(origin.x, ray.direction.x, grid.size.x, least, dims.x, m.inverse.x, m.start.x, m.speed.x, m.mirror_x);
     march_along(origin.y, ray.direction.y, grid.size.y, least, dims.y, m.inverse.y, m.start.y, m.speed.y, m.mirror_y);
@@ -97,7 +97,7 @@ DEVICE March march_of(const Grid &grid, const Ray &ray) {
     return m;
 }
 
-DEVICE bool few_cells(const unsigned (&dims)[3]) { return (dims[0] | dims[1] | dims[2]) < GRID_MOST_CELLS; }
+DEVICE bool few_cells(const unsigned (&dims)[3]) { return (dims[0] | dims[1] | dims[2]) < GRID_MAX_CELLS; }
 
 // Whether the walk can handle these numbers: neither too many cells nor scenes at the ends of the range of f32.
 DEVICE bool can_march(const March &march, const unsigned (&dims)[3]) {

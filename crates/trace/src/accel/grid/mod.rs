@@ -32,9 +32,9 @@ use std::sync::Arc;
 
 use fearless_simd::Level;
 
-use super::approach::overlap;
+use super::ray_clamp::overlap;
 use super::visit::{All, Any, Closest};
-use super::{Accelerator, Coverage, Form, Hit, Ray, Region, ShortSegments, Take, Triangle};
+use super::{Accelerator, AcceleratorKind, ChunkSink, Coverage, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
 pub use cells::Grid;
 pub use file::{GridFault, GridFileError, GridSaveError};
@@ -55,7 +55,7 @@ impl Grid {
 impl Accelerator for Grid {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
         for (hit, ray) in hits.iter_mut().zip(rays) {
-            *hit = self.approach.ray(ray).map_or(Hit::MISS, |near| {
+            *hit = self.ray_clamp.ray(ray).map_or(Hit::MISS, |near| {
                 let mut closest = Closest::new(&near, &self.coverage);
                 self.walk(near.origin, near.direction, &mut closest);
                 near.finish(closest.best)
@@ -66,7 +66,7 @@ impl Accelerator for Grid {
     fn all_hits(&self, rays: &[Ray], take: &mut dyn FnMut(usize, &[Hit])) {
         let mut hits = Vec::new();
         for (number, ray) in rays.iter().enumerate() {
-            let Some(near) = self.approach.ray(ray) else { continue };
+            let Some(near) = self.ray_clamp.ray(ray) else { continue };
             let mut all = All::new(&near, &self.coverage, &mut hits);
             self.walk(near.origin, near.direction, &mut all);
             all.finish(&near, |hits| take(number, hits));
@@ -75,7 +75,7 @@ impl Accelerator for Grid {
 
     fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
         for (occluded, segment) in occluded.iter_mut().zip(segments) {
-            *occluded = self.approach.ray(segment).is_some_and(|near| {
+            *occluded = self.ray_clamp.ray(segment).is_some_and(|near| {
                 let mut any = Any::new(&near, &self.coverage);
                 self.walk(near.origin, near.direction, &mut any);
                 any.hit
@@ -95,7 +95,7 @@ impl Accelerator for Grid {
         segments.ask(triangles.into_iter(), blocked);
     }
 
-    fn search(&self, region: &Region, take: Take) {
+    fn search(&self, region: &Region, take: ChunkSink) {
         dispatch!(Level::new(), simd => search::search(simd, self, region, take));
     }
 
@@ -114,8 +114,8 @@ impl Accelerator for Grid {
         "grid"
     }
 
-    fn form(&self) -> Form<'_> {
-        Form::Grid(self)
+    fn kind(&self) -> AcceleratorKind<'_> {
+        AcceleratorKind::Grid(self)
     }
 
     fn memory(&self) -> usize {

@@ -1,6 +1,6 @@
 //! What grids can be asked for, and why one cannot be built.
 
-use lightmesh_memory::{Budget, Short};
+use lightmesh_memory::{Budget, OverBudget};
 
 /// How a grid is laid out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,6 +53,6 @@ pub enum GridError {
         /// Cells on each axis.
         dims: [u32; 3],
         /// Bytes needed and left.
-        short: Short,
+        short: OverBudget,
     },
 }

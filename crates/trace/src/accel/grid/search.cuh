@@ -13,7 +13,7 @@
 #pragma once
 
 #include "accel/grid/searched_cells.cuh"
-#include "accel/sieve.cuh"
+#include "accel/region_filter.cuh"
 
 // A search in progress.
 struct GridSearch {
@@ -53,8 +53,8 @@ DEVICE void set_part(const Grid &grid, GridSearch &search, const Bounds &part) {
     __syncwarp();
 }
 
-template <class Form>
-DEVICE GridSearch begin_search(const Grid &grid, const Region<Form> &region, unsigned *memory) {
+template <class RegionShape>
+DEVICE GridSearch begin_search(const Grid &grid, const Region<RegionShape> &region, unsigned *memory) {
     GridSearch search = {};
     search.frame = reinterpret_cast<GridFrame *>(memory);
     search.recent = memory + GRID_FRAME_WORDS;
@@ -65,7 +65,7 @@ DEVICE GridSearch begin_search(const Grid &grid, const Region<Form> &region, uns
         search.frame->grow = growth(grid);
     }
     set_part(grid, search, in_cells(grid, region.bounds));
-    if constexpr (Form::SLANTED) {
+    if constexpr (RegionShape::SLANTED) {
         // Layers along the axis of most cells; the first is still to come.
         const CellBox cells = search.frame->cells;
         const unsigned width = cells.width, height = cells.height, depth = cells.depth;
@@ -79,19 +79,20 @@ DEVICE GridSearch begin_search(const Grid &grid, const Region<Form> &region, uns
 }
 
 // Searches through a grid begin in the cells around a region: there is nothing to start from.
-template <class Form>
-DEVICE unsigned find_starts(const Grid &, const Region<Form> &, unsigned *) { return FROM_ROOT; }
+template <class RegionShape>
+DEVICE unsigned find_starts(const Grid &, const Region<RegionShape> &, unsigned *) { return FROM_ROOT; }
 
-template <class Form>
-DEVICE GridSearch begin_search_at(const Grid &grid, const Region<Form> &region, unsigned *memory, const unsigned *, unsigned) {
+template <class RegionShape>
+DEVICE GridSearch begin_search_at(const Grid &grid, const Region<RegionShape> &region, unsigned *memory, const unsigned *,
+                                  unsigned) {
     return begin_search(grid, region, memory);
 }
 
 // Goes on with the next part of the region, if any.
-template <class Form>
-DEVICE void next_part(const Grid &grid, const Region<Form> &region, GridSearch &search) {
+template <class RegionShape>
+DEVICE void next_part(const Grid &grid, const Region<RegionShape> &region, GridSearch &search) {
     search.over = true;
-    if constexpr (Form::SLANTED) {
+    if constexpr (RegionShape::SLANTED) {
         if (search.layer > search.last_layer)
             return;
         search.over = false;
@@ -126,8 +127,8 @@ DEVICE void take_cells(const Grid &grid, GridSearch &search, bool has, int offse
 }
 
 // 1. Lanes take cells of the outer grid.
-template <class Form>
-DEVICE void next_cells(const Grid &grid, const Region<Form> &region, GridSearch &search) {
+template <class RegionShape>
+DEVICE void next_cells(const Grid &grid, const Region<RegionShape> &region, GridSearch &search) {
     const GridFrame &frame = *search.frame;
     const unsigned number = search.taken + lane_of_thread();
     int head = 0, offset = -1;
@@ -160,8 +161,8 @@ DEVICE unsigned occupied_cells(const int *row, unsigned count) {
 }
 
 // Looks for cells that hold something in a row of a nested grid, where the region meets the row's box.
-template <class Form>
-DEVICE void look_into_row(const Grid &grid, const Region<Form> &region, const NestedGrid &nested, unsigned number,
+template <class RegionShape>
+DEVICE void look_into_row(const Grid &grid, const Region<RegionShape> &region, const NestedGrid &nested, unsigned number,
                           GridSearch &search) {
     const CellBox &cells = nested.cells;
     const unsigned line = number / nested.parts, skipped = WARP * (number - line * nested.parts), layer = line / cells.height;
@@ -174,8 +175,8 @@ DEVICE void look_into_row(const Grid &grid, const Region<Form> &region, const Ne
 }
 
 // 2. Lanes take rows of the grids nested in the cells last taken.
-template <class Form>
-DEVICE void next_rows(const Grid &grid, const Region<Form> &region, GridSearch &search) {
+template <class RegionShape>
+DEVICE void next_rows(const Grid &grid, const Region<RegionShape> &region, GridSearch &search) {
     const unsigned number = search.row + lane_of_thread(), owner = warp_owner(search.end_of_rows, number);
     const int offset = __shfl_sync(ALL_LANES, search.grid, owner);
     const unsigned before = __shfl_sync(ALL_LANES, search.end_of_rows, owner - 1);
@@ -224,12 +225,12 @@ DEVICE bool is_new(GridSearch &search, bool has, unsigned index) {
 }
 
 // 4. Lanes take up to three triangles each of the cells last taken.
-template <bool SIEVED, class Form>
-DEVICE void next_listed(const Grid &grid, const Region<Form> &region, GridSearch &search, unsigned *found, unsigned &count) {
+template <bool FILTERED, class RegionShape>
+DEVICE void next_listed(const Grid &grid, const Region<RegionShape> &region, GridSearch &search, unsigned *found, unsigned &count) {
     for (unsigned i = 0; i < 3 && search.next < search.all; i++) {
         const unsigned number = search.next + lane_of_thread();
         const unsigned place = number + __shfl_sync(ALL_LANES, search.shift, warp_owner(search.end, number));
-        bool has = number < search.all && (!SIEVED || meets_triangle(region, load_corners(grid.triangles + place)));
+        bool has = number < search.all && (!FILTERED || meets_triangle(region, load_corners(grid.triangles + place)));
         has = is_new(search, has, has ? triangle_index(grid.triangles + place) : 0);
         warp_append(has, place, found, count);
         search.next += WARP;
@@ -238,10 +239,11 @@ DEVICE void next_listed(const Grid &grid, const Region<Form> &region, GridSearch
 }
 
 // One step: the last one for which there is something left.
-template <bool SIEVED, class Form>
-DEVICE void next_triangles(const Grid &grid, const Region<Form> &region, GridSearch &search, unsigned *found, unsigned &count) {
+template <bool FILTERED, class RegionShape>
+DEVICE void next_triangles(const Grid &grid, const Region<RegionShape> &region, GridSearch &search, unsigned *found,
+                           unsigned &count) {
     if (search.next < search.all)
-        next_listed<SIEVED>(grid, region, search, found, count);
+        next_listed<FILTERED>(grid, region, search, found, count);
     else if (search.cell < search.cells)
         next_occupied(grid, search);
     else if (search.row < search.rows)

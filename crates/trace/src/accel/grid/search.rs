@@ -10,7 +10,7 @@ use glam::UVec3;
 
 use super::cells::{Cell, Grid};
 use super::lattice::{Lattice, cells_between};
-use crate::accel::sieve::{Sieve, Take};
+use crate::accel::region_filter::{ChunkSink, RegionFilter};
 use crate::accel::{Hit, Region, Triangle};
 
 /// A triangle that lies in several cells is mostly found once: so many are remembered.
@@ -18,20 +18,20 @@ const RECENT: usize = 256;
 
 /// Hands over the triangles of the region's cells whose bounding boxes it may meet.
 #[simd]
-pub(super) fn search<S: Simd>(simd: S, grid: &Grid, region: &Region, take: Take) {
+pub(super) fn search<S: Simd>(simd: S, grid: &Grid, region: &Region, take: ChunkSink) {
     let mut leaves = Vec::new();
     grid.visit_region(region, &mut |triangles| leaves.push(triangles));
-    let mut sieve = Sieve::new(simd, region, take);
+    let mut filter = RegionFilter::new(simd, region, take);
     let mut recent = [Hit::NONE; RECENT];
     for &triangles in &leaves {
         for triangle in triangles {
             let before = &mut recent[triangle.index() as usize % RECENT];
-            if std::mem::replace(before, triangle.index()) != triangle.index() && !sieve.take(triangle) {
+            if std::mem::replace(before, triangle.index()) != triangle.index() && !filter.take(triangle) {
                 return;
             }
         }
     }
-    sieve.finish();
+    filter.finish();
 }
 
 impl Grid {

@@ -71,9 +71,9 @@ DEVICE Vec3 growth(const Grid &grid) {
 }
 
 // Whether the region may meet the box of some cells.
-template <class Form>
-DEVICE bool meets_cells(const Region<Form> &region, const GridFrame &frame, const Vec3 &corner, const Vec3 &size, const Vec3 &first,
-                        const Vec3 &end) {
+template <class RegionShape>
+DEVICE bool meets_cells(const Region<RegionShape> &region, const GridFrame &frame, const Vec3 &corner, const Vec3 &size,
+                        const Vec3 &first, const Vec3 &end) {
     return meets(region, corner + size * first - frame.grow, corner + size * end + frame.grow, 0.0f);
 }
 

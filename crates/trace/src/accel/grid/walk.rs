@@ -10,7 +10,7 @@
 //! before the exit from the current cell.
 
 use glam::{IVec3, UVec3, Vec3};
-use lightmesh_layout::constants::LEAST_COMPONENT;
+use lightmesh_layout::constants::MIN_COMPONENT;
 
 use super::cells::{Cell, Grid};
 use crate::accel::visit::Visitor;
@@ -96,7 +96,7 @@ impl March {
 impl Grid {
     /// Visits the triangles of all cells along the ray up to the visitor's limit.
     pub(super) fn walk(&self, origin: Vec3, direction: Vec3, visitor: &mut impl Visitor) {
-        let still = direction.abs().cmplt(Vec3::splat(LEAST_COMPONENT * direction.abs().max_element()));
+        let still = direction.abs().cmplt(Vec3::splat(MIN_COMPONENT * direction.abs().max_element()));
         let march = March {
             origin: (origin.as_dvec3() - self.lattice.origin).as_vec3(),
             direction: Vec3::select(still, Vec3::ZERO, direction),

@@ -7,7 +7,7 @@
 //!
 //! # What a structure may rely on
 //!
-//! [`Region::meets`] is true of every box that the region meets, and of few others. Rounding is on the safe side: each form says how,
+//! [`Region::meets`] is true of every box that the region meets, and of few others. Rounding is on the safe side: each shape says how,
 //! next to its test, and all allow [`REGION_ROUNDING`] for it, 16 ε with ε = 2⁻²⁴. No box has to be enlarged for that; boxes whose
 //! planes are rounded, such as those of a compressed node, are enlarged where they are computed.
 //!
@@ -29,14 +29,14 @@ use shaft::Shaft;
 /// A region of space that is searched for triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct Region {
-    form: Form,
+    shape: RegionShape,
     planes: TangentPlanes,
     /// No point of the region lies outside.
     bounds: Bounds,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Form {
+enum RegionShape {
     /// The bounds themselves.
     Box,
     /// All points near a box.
@@ -52,7 +52,7 @@ enum Form {
 impl Region {
     /// A closed box.
     pub fn within(bounds: Bounds) -> Region {
-        Region { form: Form::Box, planes: TangentPlanes::NONE, bounds }
+        Region { shape: RegionShape::Box, planes: TangentPlanes::NONE, bounds }
     }
 
     /// All points at most `reach` away from some point of `origins`.
@@ -62,7 +62,7 @@ impl Region {
     pub fn near(origins: Bounds, reach: f32) -> Region {
         let square = reach * reach * (1.0 + REGION_ROUNDING) + f32::MIN_POSITIVE;
         let bounds = Bounds { min: below(origins.min - reach), max: above(origins.max + reach) };
-        Region { form: Form::Near { origins, square }, planes: TangentPlanes::NONE, bounds }
+        Region { shape: RegionShape::Near { origins, square }, planes: TangentPlanes::NONE, bounds }
     }
 
     /// All points of all segments from a point of `origins` to a point of `emitter`.
@@ -71,7 +71,7 @@ impl Region {
             return Region::within(Bounds::EMPTY);
         }
         let bounds = Bounds { min: origins.min.min(emitter.min), max: origins.max.max(emitter.max) };
-        Region { form: Form::Shaft(Shaft::new(&origins, &emitter)), planes: TangentPlanes::NONE, bounds }
+        Region { shape: RegionShape::Shaft(Shaft::new(&origins, &emitter)), planes: TangentPlanes::NONE, bounds }
     }
 
     /// The part that does not lie below all the planes; everything if there are none.
@@ -86,22 +86,22 @@ impl Region {
 
     /// The way from the middle of a shaft's first box to that of its second; zero for other forms.
     pub(super) fn heading(&self) -> Vec3 {
-        match &self.form {
-            Form::Shaft(shaft) => shaft.heading(),
-            Form::Box | Form::Near { .. } => Vec3::ZERO,
+        match &self.shape {
+            RegionShape::Shaft(shaft) => shaft.heading(),
+            RegionShape::Box | RegionShape::Near { .. } => Vec3::ZERO,
         }
     }
 
     /// Whether its bounds may be far larger than the region itself, so that parts of it should be bounded [one by one](Self::between).
     pub(super) fn is_slanted(&self) -> bool {
-        matches!(self.form, Form::Shaft(_))
+        matches!(self.shape, RegionShape::Shaft(_))
     }
 
     /// A box around all of its points whose coordinate on `axis` lies between `low` and `high`; empty if there are none.
     pub(super) fn between(&self, axis: usize, low: f32, high: f32) -> Bounds {
-        let mut bounds = match &self.form {
-            Form::Shaft(shaft) => shaft.between(axis, low, high),
-            Form::Box | Form::Near { .. } => self.bounds,
+        let mut bounds = match &self.shape {
+            RegionShape::Shaft(shaft) => shaft.between(axis, low, high),
+            RegionShape::Box | RegionShape::Near { .. } => self.bounds,
         };
         bounds.min[axis] = bounds.min[axis].max(low);
         bounds.max[axis] = bounds.max[axis].min(high);
@@ -111,10 +111,10 @@ impl Region {
     /// Bit k: the region may meet box k.
     #[inline(always)]
     pub(super) fn meets<S: Simd>(&self, simd: S, boxes: &Boxes<S>) -> u32 {
-        let met = match &self.form {
-            Form::Box => boxes.overlapping(simd, &self.bounds),
-            Form::Near { origins, square } => boxes.near(simd, origins, *square),
-            Form::Shaft(shaft) => shaft.meets(simd, boxes),
+        let met = match &self.shape {
+            RegionShape::Box => boxes.overlapping(simd, &self.bounds),
+            RegionShape::Near { origins, square } => boxes.near(simd, origins, *square),
+            RegionShape::Shaft(shaft) => shaft.meets(simd, boxes),
         };
         if met == 0 || self.planes.is_empty() { met } else { met & self.planes.reached(simd, boxes) }
     }

@@ -7,13 +7,13 @@ use lightmesh_image::internals::exr::{
     MATERIALS, OBJECTS, REST, light_names, read, visibility_name, write, write_layers, write_values,
 };
 use lightmesh_image::{
-    DecodeError, Description, ExrCompression, ExrOptions, ExrParts, ExrSamples, Frame, Layers, MOST_RANKS, Matte, Rank,
+    DecodeError, Description, ExrCompression, ExrOptions, ExrParts, ExrSamples, Frame, Layers, MAX_RANKS, Matte, Rank,
     SaveOptions,
 };
 
 /// Six ranks, in which pixels see up to two things.
 fn matte(names: [&str; 3]) -> Matte {
-    let mut matte = Matte::nothing(names.map(str::to_owned).to_vec(), MOST_RANKS, 6);
+    let mut matte = Matte::nothing(names.map(str::to_owned).to_vec(), MAX_RANKS, 6);
     matte.nearest = vec![0, 1, 2, 3, 1, 2];
     matte.ranks[0] = Rank { number: vec![0, 2, 2, 3, 1, 2], share: vec![0.0, 0.75, 1.0, 0.5, 0.3, 0.6] };
     matte.ranks[1] = Rank { number: vec![0, 1, 0, 1, 0, 3], share: vec![0.0, 0.25, 0.0, 0.5, 0.0, 0.4] };
@@ -147,7 +147,7 @@ fn channels_have_their_names_in_one_part_of_floats() {
         .chain(
             [OBJECTS, MATERIALS]
                 .into_iter()
-                .flat_map(|naming| (0..MOST_RANKS).flat_map(move |rank| naming.channels(rank))),
+                .flat_map(|naming| (0..MAX_RANKS).flat_map(move |rank| naming.channels(rank))),
         )
         .collect();
     expected.sort();

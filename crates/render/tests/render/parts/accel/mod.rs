@@ -1,6 +1,6 @@
 mod bvh_build;
 mod coverage;
-mod distinct;
+mod deduplicate;
 mod grid_build;
 mod grid_distance;
 mod grid_file;

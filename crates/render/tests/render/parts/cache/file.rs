@@ -7,8 +7,8 @@ use flate2::write::DeflateEncoder;
 use glam::{DVec3, UVec3, Vec3};
 use lightmesh_memory::Budget;
 use lightmesh_render::internals::cache::{
-    Content, HEADER, MAGIC, Places, SavedGathered, Section, Seen, Stored, StoredAnswers, StoredColumn, TRAILER, decode,
-    load, write,
+    ColumnKey, Content, HEADER, MAGIC, Places, SavedGathered, Section, Stored, StoredAnswers, StoredColumn, TRAILER,
+    decode, load, write,
 };
 use lightmesh_render::internals::gathered::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite};
 use lightmesh_render::{Acceleration, MeshCache, MeshFault, MeshSaveError, PreparedScene, Unobserved};
@@ -45,7 +45,7 @@ fn section(scene: &PreparedScene) -> Section {
             Some((samples, _)) => StoredAnswers::Shares((0..68).map(|share| (share % (samples + 1)) as u16).collect()),
         };
         let known = if index == 1 { other } else { known };
-        StoredColumn { seen: Seen { kind, glows: index == 7, sampling }, known: known.into(), answers }
+        StoredColumn { seen: ColumnKey { kind, glows: index == 7, sampling }, known: known.into(), answers }
     };
     let columns = kinds.into_iter().enumerate().map(column).collect();
     let places = Places { anchor: Vec3::new(0.1, 0.2, 0.3), step: 0.25, number: UVec3::new(7, 2_097_151, 0) };

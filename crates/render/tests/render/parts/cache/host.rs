@@ -1,17 +1,17 @@
 use glam::Vec3;
-use lightmesh_render::internals::cache::{Allowance, Seen, bytes_of_rows};
+use lightmesh_render::internals::cache::{Allowance, ColumnKey, bytes_of_rows};
 use lightmesh_render::internals::light_mesh::bits;
 use lightmesh_render::light_mesh::BrickKey;
-use lightmesh_render::{HostTable, LitBy, Table};
+use lightmesh_render::{HostTable, Table, VisibilityOfLight};
 use lightmesh_scene::LightKind;
 
 const BRICKS: usize = 100;
 
-fn lights() -> Vec<Seen> {
+fn lights() -> Vec<ColumnKey> {
     let kind = |x: f32| LightKind::Sphere { position: Vec3::new(x, 4.0, 0.0), radius: 0.5 };
     vec![
-        Seen { kind: kind(0.0), glows: false, sampling: None },
-        Seen { kind: kind(1.0), glows: false, sampling: Some((9, 0)) },
+        ColumnKey { kind: kind(0.0), glows: false, sampling: None },
+        ColumnKey { kind: kind(1.0), glows: false, sampling: Some((9, 0)) },
     ]
 }
 
@@ -30,13 +30,13 @@ fn image(table: &mut HostTable, number: u32, most: u64, bricks: &[BrickKey]) -> 
     let used = vec![u64::MAX; bricks.len()];
     let asked = [0, 1].map(|light| table.unknown(light, &rows, &used));
     let found = bricks.iter().zip(&asked[0]).map(|(&brick, asked)| bits_of(brick) & asked).collect();
-    table.learn(0, &rows, &asked[0], &LitBy::Bits(found));
+    table.learn(0, &rows, &asked[0], &VisibilityOfLight::Bits(found));
     let points = bricks.iter().zip(&asked[1]).flat_map(|(&brick, &asked)| bits(asked).map(move |bit| (brick, bit)));
     let seen = points.map(|(brick, bit)| share_of(brick, bit)).collect();
-    table.learn(1, &rows, &asked[1], &LitBy::Share { seen, samples: 9 });
-    let LitBy::Bits(words) = table.recall(0, &rows, &used) else { panic!("bits") };
+    table.learn(1, &rows, &asked[1], &VisibilityOfLight::Share { seen, samples: 9 });
+    let VisibilityOfLight::Bits(words) = table.lookup(0, &rows, &used) else { panic!("bits") };
     assert!(words.iter().zip(bricks).all(|(&word, &brick)| word == bits_of(brick)));
-    let LitBy::Share { seen, .. } = table.recall(1, &rows, &used) else { panic!("shares") };
+    let VisibilityOfLight::Share { seen, .. } = table.lookup(1, &rows, &used) else { panic!("shares") };
     let expected = bricks.iter().flat_map(|&brick| (0..64).map(move |bit| share_of(brick, bit)));
     assert!(seen.into_iter().eq(expected));
     Some(asked[0].iter().map(|asked| u64::from(asked.count_ones())).sum())

@@ -1,3 +1,3 @@
 mod file;
 mod host;
-mod noticed;
+mod invalidation;

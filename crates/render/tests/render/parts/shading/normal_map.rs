@@ -1,5 +1,5 @@
 use glam::Vec3;
-use lightmesh_layout::constants::{LEAST_MIRRORED_COSINE, NORMAL_CODE_ONE, NORMAL_CODE_ZERO};
+use lightmesh_layout::constants::{MIN_MIRRORED_COSINE, NORMAL_CODE_ONE, NORMAL_CODE_ZERO};
 use lightmesh_render::internals::shading::{Relief, mirroring};
 
 #[test]
@@ -24,9 +24,9 @@ fn what_is_mirrored_leaves_the_surface() {
         let direction = 2.0 * turned.dot(view) * turned - view;
         assert!(turned.is_normalized() && direction.y > 0.0, "{normal} {view}: {turned}");
         let plain = 2.0 * normal.dot(view) * normal - view;
-        assert_eq!(turned == normal, plain.y >= LEAST_MIRRORED_COSINE.min(0.5 * view.y));
+        assert_eq!(turned == normal, plain.y >= MIN_MIRRORED_COSINE.min(0.5 * view.y));
         // A little more is turned a little more.
-        if (plain.y - LEAST_MIRRORED_COSINE).abs() < 1e-3 && normal.dot(view) > 0.1 {
+        if (plain.y - MIN_MIRRORED_COSINE).abs() < 1e-3 && normal.dot(view) > 0.1 {
             assert!(turned.dot(normal) > 0.999, "{normal} {view}: {turned}");
         }
     }

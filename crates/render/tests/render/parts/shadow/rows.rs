@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
-use lightmesh_layout::constants::{MOST_OF_ROW, MOST_ROWS};
+use lightmesh_layout::constants::{MAX_OF_ROW, MAX_ROWS};
 use lightmesh_layout::scene::SampleRows;
-use lightmesh_render::internals::shadow::{KnownRows, MOST_KNOWN, Rows};
+use lightmesh_render::internals::shadow::{KnownRows, MAX_KNOWN, Rows};
 
 const NUMBERS: [u32; 12] = [1, 2, 3, 5, 16, 17, 64, 225, 256, 300, 1000, 65535];
 
@@ -15,7 +15,7 @@ fn rows_that_are_kept_are_those_of_their_number() {
     }
     let first = known.of(1);
     assert!(Arc::ptr_eq(&first, &known.of(1)), "rows are found once");
-    (2..=MOST_KNOWN as u32 + 1).for_each(|samples| drop(known.of(samples)));
+    (2..=MAX_KNOWN as u32 + 1).for_each(|samples| drop(known.of(samples)));
     assert!(!Arc::ptr_eq(&first, &known.of(1)), "no more than these are kept");
 }
 
@@ -42,7 +42,7 @@ fn every_sample_has_a_bit() {
                 let mut bits = 0u32;
                 for row in rows {
                     let own = ((1u64 << set.count[row]) - 1) << set.place[row];
-                    assert!(own <= u64::from(u32::MAX) && bits & own as u32 == 0 && set.count[row] <= MOST_OF_ROW);
+                    assert!(own <= u64::from(u32::MAX) && bits & own as u32 == 0 && set.count[row] <= MAX_OF_ROW);
                     bits |= own as u32;
                 }
                 first = set.ends[word] as usize;
@@ -54,7 +54,7 @@ fn every_sample_has_a_bit() {
                 assert_eq!(sets.len(), 1, "{samples} samples of a {what}");
             }
         }
-        let edges = |choose: fn(&SampleRows) -> u32| rectangle.iter().filter(|set| choose(set) < MOST_ROWS).count();
+        let edges = |choose: fn(&SampleRows) -> u32| rectangle.iter().filter(|set| choose(set) < MAX_ROWS).count();
         assert_eq!((edges(|set| set.entering), edges(|set| set.leaving)), (1, 1), "{samples}");
     }
 }

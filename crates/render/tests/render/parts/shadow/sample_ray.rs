@@ -4,7 +4,7 @@ use glam::Vec3;
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_render::SurfacePoint;
 use lightmesh_render::accel::{Accelerator, Bvh, Triangle};
-use lightmesh_render::internals::shadow::{Cuts, Rows, SampleRays, Sight, Sights};
+use lightmesh_render::internals::shadow::{Cuts, ProjectedLight, ProjectedLights, Rows, SampleRays};
 use lightmesh_render::internals::simd::{LANES, dispatch, splat};
 
 /// Numbers in [−1, 1).
@@ -52,25 +52,31 @@ fn hidden<S: Simd>(
     simd: S,
     bvh: &Bvh,
     triangles: &[Triangle],
-    (point, sight): (&SurfacePoint, &Sight),
+    (point, projected): (&SurfacePoint, &ProjectedLight),
     set: &SampleRows,
 ) -> Vec<[u32; 2]> {
-    let sights = Sights::splat(simd, point, sight);
+    let projected_lights = ProjectedLights::splat(simd, point, projected);
     let mut offsets = [f32x8::splat(simd, 0.0); 20];
     for (row, offset) in offsets.iter_mut().enumerate().take(set.rows as usize) {
-        *offset = f32x8::splat(simd, sight.offset(set, row));
+        *offset = f32x8::splat(simd, projected.offset(set, row));
     }
     let mut seen = set.full.map(|full| u32x8::splat(simd, full));
     for triangle in triangles {
         let corners = triangle.corners().map(|corner| splat(simd, corner));
-        sights.hide(simd, (corners, Cuts::splat(bvh.coverage(), triangle.cut())), (set, &offsets), 0xff, &mut seen);
+        projected_lights.hide(
+            simd,
+            (corners, Cuts::splat(bvh.coverage(), triangle.cut())),
+            (set, &offsets),
+            0xff,
+            &mut seen,
+        );
     }
     let mut rays = SampleRays::default();
     let words = seen.iter().enumerate().take(set.words as usize);
     words
         .map(|(word, &seen)| {
             rays.most = u32::MAX;
-            let arrive = rays.cast(simd, (bvh, 1.0), (point, sight), (set, word), set.full[word]);
+            let arrive = rays.cast(simd, (bvh, 1.0), (point, projected), (set, word), set.full[word]);
             [<[u32; LANES]>::from(seen)[0], arrive].map(|seen| set.full[word] & !seen)
         })
         .collect()
@@ -95,7 +101,7 @@ fn rays_have_the_bits_of_rows() {
             let point =
                 SurfacePoint { position: origin, origin, normal: (Vec3::Y + 0.9 * random.vector()).normalize() };
             let center = Vec3::Y * 3.0 + random.vector();
-            let sight = Sight {
+            let projected = ProjectedLight {
                 center,
                 along: random.vector(),
                 across: random.vector(),
@@ -105,7 +111,7 @@ fn rays_have_the_bits_of_rows() {
                 choice: 0,
             };
             for set in [&rows.disc[0], &rows.rectangle[0]] {
-                let found = dispatch!(Level::new(), simd => hidden(simd, &bvh, &triangles, (&point, &sight), set));
+                let found = dispatch!(Level::new(), simd => hidden(simd, &bvh, &triangles, (&point, &projected), set));
                 counts[1] += set.count.iter().sum::<u32>();
                 for [rows, rays] in found {
                     assert_eq!(rows, rays, "{samples} samples, trial {trial}");

@@ -42,8 +42,8 @@ fn darkest(light: impl Fn(Vec3) -> Light) -> [f32; 2] {
         let light = light(way);
         let points = [flat, ShadowPoint::new(flat, mesh, &hit, triangle).toward(&light, geometry)];
         for (worst, point) in worst.iter_mut().zip(points) {
-            let target = light_center(&light, point.origin, geometry.reach(point.origin));
-            let shaded = light_center(&light, flat.origin, geometry.reach(flat.origin)) - flat.position;
+            let target = light_center(&light, point.origin, geometry.sun_distance(point.origin));
+            let shaded = light_center(&light, flat.origin, geometry.sun_distance(flat.origin)) - flat.position;
             let cosine = normal.dot(shaded.normalize());
             let mut hidden = [point.normal.dot(target - point.origin) <= 0.0];
             if !hidden[0] {

@@ -3,7 +3,9 @@
 use glam::{DVec3, Vec3};
 use lightmesh_render::backend::{Backend, Cpu, Seen, Wave};
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, brick_of, point_bit, point_of};
-use lightmesh_render::{Acceleration, Job, LightGroup, LitBy, PreparedScene, Sampling, SurfacePoint, Unobserved, View};
+use lightmesh_render::{
+    Acceleration, LightGroup, PreparedScene, RenderContext, Sampling, SurfacePoint, Unobserved, View, VisibilityOfLight,
+};
 use lightmesh_scene::{LightKind, Weight};
 use lightmesh_testkit::{WEIGHTS, pile};
 
@@ -29,14 +31,15 @@ fn visibility_is_the_weighted_mean_of_the_light_points() {
         let lattice = Lattice::around(&scene, 0.2, radius).unwrap();
         let template = Template::new(radius).unwrap();
         let mesh = LightMesh { lattice, template, radius: 0.2 * radius, weight };
-        let job = Job::new(&Unobserved, Sampling { samples: 5, seed: 0, spread: false });
+        let context = RenderContext::new(&Unobserved, Sampling { samples: 5, seed: 0, spread: false });
         let cpu = Cpu;
         let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64, 0).unwrap();
-        let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
-        let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
+        let hits = cpu.primary_rays(&context, &scene, &rays).unwrap();
+        let wave =
+            Wave { context: &context, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = cpu.cells(&wave, &mesh).unwrap();
         let masks = cpu.short_tests(&wave, &cells, &mesh).unwrap();
-        let points = cpu.light_points(&job, &cells, &masks, &mesh).unwrap();
+        let points = cpu.light_points(&context, &cells, &masks, &mesh).unwrap();
         let lit = cpu.long_tests(&wave, &points, &mesh, None).unwrap();
         let seen = Seen { mesh: &mesh, cells: &cells, masks: &masks, points: &points, lit: &lit };
         let found = cpu.interpolate(&wave, &seen).unwrap();
@@ -63,8 +66,8 @@ fn visibility_is_the_weighted_mean_of_the_light_points() {
                     for &index in &used {
                         let brick = points.bricks().find(brick_of(index)).unwrap();
                         let value = match seen {
-                            LitBy::Bits(words) => (words[brick] >> point_bit(index) & 1) as f64,
-                            LitBy::Share { seen, samples } => {
+                            VisibilityOfLight::Bits(words) => (words[brick] >> point_bit(index) & 1) as f64,
+                            VisibilityOfLight::Share { seen, samples } => {
                                 f64::from(seen[points.rank(brick, point_bit(index))]) / f64::from(*samples)
                             }
                         };

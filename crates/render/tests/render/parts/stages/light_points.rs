@@ -6,7 +6,7 @@ use glam::{DVec3, IVec3, Vec3};
 use lightmesh_render::backend::{Backend, Cpu, Wave};
 use lightmesh_render::internals::light_mesh::bits;
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, point_of};
-use lightmesh_render::{Acceleration, Job, LightGroup, PreparedScene, Sampling, Tally, Unobserved, View};
+use lightmesh_render::{Acceleration, LightGroup, PreparedScene, RenderContext, Sampling, Tally, Unobserved, View};
 use lightmesh_scene::{LightKind, Weight};
 use lightmesh_testkit::pile;
 
@@ -18,14 +18,15 @@ fn the_list_is_the_union_of_all_masks() {
         let lattice = Lattice::around(&scene, step, radius).unwrap();
         let template = Template::new(radius).unwrap();
         let mesh = LightMesh { lattice, template, radius: radius * step, weight: Weight::Smooth };
-        let job = Job::new(&Unobserved, Sampling { samples: 4, seed: 0, spread: false });
+        let context = RenderContext::new(&Unobserved, Sampling { samples: 4, seed: 0, spread: false });
         let backend = Cpu;
         let rays = backend.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64, 0).unwrap();
-        let hits = backend.primary_rays(&job, &scene, &rays).unwrap();
-        let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
+        let hits = backend.primary_rays(&context, &scene, &rays).unwrap();
+        let wave =
+            Wave { context: &context, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
         let cells = backend.cells(&wave, &mesh).unwrap();
         let masks = backend.short_tests(&wave, &cells, &mesh).unwrap();
-        let points = backend.light_points(&job, &cells, &masks, &mesh).unwrap();
+        let points = backend.light_points(&context, &cells, &masks, &mesh).unwrap();
 
         let mut expected = BTreeSet::new();
         for group in 0..cells.len() {
@@ -40,7 +41,7 @@ fn the_list_is_the_union_of_all_masks() {
         assert_eq!(listed.len(), points.count());
         assert_eq!(listed.iter().map(IVec3::to_array).collect::<BTreeSet<_>>(), expected, "h = {step}, R = {radius}");
         assert_eq!(listed.len(), expected.len(), "each once");
-        assert_eq!(Tally::get(&job.tally.light_points), expected.len() as u64);
+        assert_eq!(Tally::get(&context.tally.light_points), expected.len() as u64);
         assert!(!expected.is_empty());
         for point in listed {
             let place = (point - mesh.lattice.first).to_array();

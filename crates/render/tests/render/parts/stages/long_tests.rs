@@ -4,7 +4,10 @@ use glam::{DVec3, Vec3};
 use lightmesh_render::accel::{Accelerator, BruteForce, Ray};
 use lightmesh_render::backend::{Backend, Cpu, Wave};
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, UsedPoints, point_bit};
-use lightmesh_render::{Acceleration, Job, LightGroup, Lit, LitBy, PreparedScene, Sampling, Tally, Unobserved, View};
+use lightmesh_render::{
+    Acceleration, LightGroup, LightPointVisibility, PreparedScene, RenderContext, Sampling, Tally, Unobserved, View,
+    VisibilityOfLight,
+};
 use lightmesh_scene::{LightKind, Weight};
 use lightmesh_testkit::pile;
 
@@ -20,31 +23,34 @@ fn lights(radius: f32) -> [LightKind; 3] {
     ]
 }
 
-/// Passes the tested light points, what they see, and the job to `judge`.
-fn with_light_points(radius: f32, judge: impl Fn(&PreparedScene, &LightMesh, &UsedPoints, &Lit, &Job)) {
+/// Passes the tested light points, what they see, and the context to `judge`.
+fn with_light_points(
+    radius: f32,
+    judge: impl Fn(&PreparedScene, &LightMesh, &UsedPoints, &LightPointVisibility, &RenderContext),
+) {
     let scene = pile(DVec3::ZERO, &lights(radius));
     let scene = PreparedScene::new(&scene, &Acceleration::Bvh, &Unobserved).unwrap();
     let lattice = Lattice::around(&scene, 0.2, 2.1).unwrap();
     let mesh = LightMesh { lattice, template: Template::new(2.1).unwrap(), radius: 0.42, weight: Weight::Smooth };
-    let job = Job::new(&Unobserved, Sampling { samples: SAMPLES, seed: 0, spread: false });
+    let context = RenderContext::new(&Unobserved, Sampling { samples: SAMPLES, seed: 0, spread: false });
     let cpu = Cpu;
     let rays = cpu.camera_rays(&View::new(&scene.scene.cameras[0], [64, 64]), 0..64, 0).unwrap();
-    let hits = cpu.primary_rays(&job, &scene, &rays).unwrap();
-    let wave = Wave { job: &job, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
+    let hits = cpu.primary_rays(&context, &scene, &rays).unwrap();
+    let wave = Wave { context: &context, scene: &scene, rays: &rays, hits: &hits, lights: LightGroup::ALL, parts: 1 };
     let cells = cpu.cells(&wave, &mesh).unwrap();
     let masks = cpu.short_tests(&wave, &cells, &mesh).unwrap();
-    let points = cpu.light_points(&job, &cells, &masks, &mesh).unwrap();
+    let points = cpu.light_points(&context, &cells, &masks, &mesh).unwrap();
     let lit = cpu.long_tests(&wave, &points, &mesh, None).unwrap();
-    judge(&scene, &mesh, &points, &lit, &job);
+    judge(&scene, &mesh, &points, &lit, &context);
 }
 
 #[test]
 fn bits_are_what_a_ray_through_all_triangles_finds() {
     with_light_points(0.4, |scene, mesh, points, lit, _| {
         let oracle = BruteForce::new(scene.geometry.triangles.stored());
-        let far = scene.geometry.reach(Vec3::ZERO) * 4.0;
+        let far = scene.geometry.sun_distance(Vec3::ZERO) * 4.0;
         for (light, direction) in [(0, None), (1, Some(Vec3::new(-0.6, 0.8, 0.0)))] {
-            let LitBy::Bits(words) = &lit.lights[light] else { panic!("seen or not") };
+            let VisibilityOfLight::Bits(words) = &lit.lights[light] else { panic!("seen or not") };
             let (mut seen, mut hidden) = (0, 0);
             for (brick, word) in words.iter().enumerate() {
                 assert_eq!(word & !points.used()[brick], 0, "only used points are lit");
@@ -64,22 +70,23 @@ fn bits_are_what_a_ray_through_all_triangles_finds() {
 
 #[test]
 fn a_light_with_a_size_is_seen_in_shares() {
-    with_light_points(0.8, |_, _, points, lit, job| {
-        let LitBy::Share { seen, samples } = &lit.lights[2] else { panic!("a share") };
+    with_light_points(0.8, |_, _, points, lit, context| {
+        let VisibilityOfLight::Share { seen, samples } = &lit.lights[2] else { panic!("a share") };
         assert_eq!((*samples, seen.len()), (SAMPLES, points.count()));
         for share in 0..=SAMPLES as u16 {
             assert!(seen.contains(&share), "no light point sees {share} of {SAMPLES}");
         }
         assert!(seen.iter().all(|&share| u32::from(share) <= SAMPLES));
         // One ray to the point light, one to the sun, and the samples.
-        assert_eq!(Tally::get(&job.tally.long_tests), points.count() as u64 * u64::from(2 + SAMPLES));
+        assert_eq!(Tally::get(&context.tally.long_tests), points.count() as u64 * u64::from(2 + SAMPLES));
     });
 }
 
 #[test]
 fn a_light_of_hardly_any_size_is_seen_as_a_point_light() {
     with_light_points(1e-6, |_, _, points, lit, _| {
-        let (LitBy::Bits(words), LitBy::Share { seen, .. }) = (&lit.lights[0], &lit.lights[2]) else {
+        let (VisibilityOfLight::Bits(words), VisibilityOfLight::Share { seen, .. }) = (&lit.lights[0], &lit.lights[2])
+        else {
             panic!("one bit for the point, shares for the ball")
         };
         let mut differing = 0;

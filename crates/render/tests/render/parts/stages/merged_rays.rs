@@ -3,7 +3,7 @@ use lightmesh_layout::constants::{FADE_SHIFT, THROUGHS_MASK, THROUGHS_SHIFT};
 use lightmesh_render::accel::{Hit, Ray};
 use lightmesh_render::backend::Wave;
 use lightmesh_render::internals::stages::merged_rays;
-use lightmesh_render::{Acceleration, Cone, Job, LightGroup, PreparedScene, RayList, Sampling, Unobserved};
+use lightmesh_render::{Acceleration, Cone, LightGroup, PreparedScene, RayList, RenderContext, Sampling, Unobserved};
 use lightmesh_scene::Material;
 use lightmesh_testkit::SceneDraft;
 
@@ -34,8 +34,8 @@ fn left_of(ks: f32, rays: &[(f32, u32)], marks: u32, times: f32) -> (RayList, Ve
     };
     let mut hits = vec![Hit::MISS; rays.len()];
     scene.geometry.accelerator.closest_hits(&list.rays, &mut hits);
-    let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
-    merged_rays(&Wave { job: &job, scene: &scene, rays: &list, hits: &hits, lights: LightGroup::ALL, parts: 1 })
+    let context = RenderContext::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
+    merged_rays(&Wave { context: &context, scene: &scene, rays: &list, hits: &hits, lights: LightGroup::ALL, parts: 1 })
 }
 
 const RAYS: [(f32, u32); 7] = [(1.0, 3), (-1.0, 3), (1.1, 3), (9.0, 3), (-1.1, 3), (1.2, 5), (8.0, 5)];

@@ -1,11 +1,11 @@
 //! Directions and weights of mirrored rays.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{DEEP, DIRECTION_SHIFT, LEAST_THICK, LEAST_THICK_DEEP, MOST_DIRECTIONS};
+use lightmesh_layout::constants::{DEEP, DIRECTION_SHIFT, MAX_DIRECTIONS, MIN_THICK, MIN_THICK_DEEP};
 use lightmesh_render::accel::{Hit, Ray};
 use lightmesh_render::backend::Wave;
 use lightmesh_render::internals::stages::mirror_rays;
-use lightmesh_render::{Acceleration, Job, LightGroup, PreparedScene, RayList, Sampling, Unobserved, Window};
+use lightmesh_render::{Acceleration, LightGroup, PreparedScene, RayList, RenderContext, Sampling, Unobserved, Window};
 use lightmesh_scene::{Facets, Material, Opacity};
 use lightmesh_testkit::SceneDraft;
 
@@ -21,9 +21,9 @@ fn mirrored(material: Material, normals: Option<Vec3>, list: &RayList) -> RayLis
     let scene = PreparedScene::new(&scene, &Acceleration::BruteForce, &Unobserved).unwrap();
     let mut hits = vec![Hit::MISS; list.rays.len()];
     scene.geometry.accelerator.closest_hits(&list.rays, &mut hits);
-    let job = Job::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
+    let context = RenderContext::new(&Unobserved, Sampling { samples: 1, seed: 0, spread: false });
     let list = &RayList { bounces: list.depth + 1, ..list.clone() };
-    mirror_rays(&Wave { job: &job, scene: &scene, rays: list, hits: &hits, lights: LightGroup::ALL, parts: 1 })
+    mirror_rays(&Wave { context: &context, scene: &scene, rays: list, hits: &hits, lights: LightGroup::ALL, parts: 1 })
 }
 
 /// Rays of unit length: two that meet the floor and, between them, one that does not.
@@ -76,16 +76,16 @@ fn smooth_normals_turn_the_mirror_but_not_into_the_surface() {
 fn rays_from_a_rough_mirror_leave_another_in_different_directions() {
     let down = Ray { origin: Vec3::new(0.5, 2.0, 0.25), direction: Vec3::NEG_Y, t_max: f32::INFINITY };
     let list = RayList {
-        rays: vec![down; MOST_DIRECTIONS as usize],
-        pixels: vec![4; MOST_DIRECTIONS as usize],
-        samples: (0..MOST_DIRECTIONS).map(|number| 1 | number << DIRECTION_SHIFT).collect(),
+        rays: vec![down; MAX_DIRECTIONS as usize],
+        pixels: vec![4; MAX_DIRECTIONS as usize],
+        samples: (0..MAX_DIRECTIONS).map(|number| 1 | number << DIRECTION_SHIFT).collect(),
         window: Window::all([8, 8]),
         depth: 1,
         ..RayList::default()
     };
     let metal = Material::matt(Vec3::ONE).with_facets(Facets::new(0.5).with_metallic(1.0));
     let next = mirrored(metal, None, &list);
-    assert_eq!(next.rays.len(), MOST_DIRECTIONS as usize, "one of each");
+    assert_eq!(next.rays.len(), MAX_DIRECTIONS as usize, "one of each");
     for (first, ray) in next.rays.iter().enumerate() {
         for other in &next.rays[..first] {
             assert!(ray.direction.distance(other.direction) > 1e-3, "{} and {}", ray.direction, other.direction);
@@ -119,8 +119,8 @@ fn carried(list: &RayList) -> Vec<f64> {
 #[test]
 fn faint_rays_are_thinned_and_carry_what_they_did() {
     let glass = mirror(Vec3::ONE).with_opacity(Opacity::blend(0.5));
-    let deep = [(1.0 / 1000.0, 13), (1.0 / 5000.0, 40), (1.0 / 20_000.0, 7)].map(|rays| (DEEP, LEAST_THICK_DEEP, rays));
-    let other = [(1.0 / 5000.0, 40), (1.0 / 90_000.0, 30)].map(|rays| (DEEP - 1, LEAST_THICK, rays));
+    let deep = [(1.0 / 1000.0, 13), (1.0 / 5000.0, 40), (1.0 / 20_000.0, 7)].map(|rays| (DEEP, MIN_THICK_DEEP, rays));
+    let other = [(1.0 / 5000.0, 40), (1.0 / 90_000.0, 30)].map(|rays| (DEEP - 1, MIN_THICK, rays));
     for (depth, thick, (weight, each)) in deep.into_iter().chain(other) {
         let thick = f64::from(thick);
         let next = faint(glass.clone(), depth, weight, each);
@@ -139,7 +139,7 @@ fn faint_rays_are_thinned_and_carry_what_they_did() {
 fn what_is_seen_well_is_not_thinned() {
     let half = |next: &RayList, share: f32| next.weights.iter().all(|&weight| weight == Vec3::splat(share));
     let glass = mirror(Vec3::ONE).with_opacity(Opacity::blend(0.5));
-    for (depth, thick) in [(0, LEAST_THICK), (DEEP - 1, LEAST_THICK), (DEEP, LEAST_THICK_DEEP)] {
+    for (depth, thick) in [(0, MIN_THICK), (DEEP - 1, MIN_THICK), (DEEP, MIN_THICK_DEEP)] {
         let next = faint(glass.clone(), depth, 2.0 * thick, 3);
         assert!(next.rays.len() == 2 * 3 * 64 * 64 && half(&next, thick), "both rays of each go on as they are");
     }

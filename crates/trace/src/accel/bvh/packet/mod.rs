@@ -65,7 +65,7 @@ pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut
     let (mut order, mut stacks) = (Order::default(), Stacks::new(bvh.depth));
     hits.fill(Hit::MISS);
     for (rays, hits) in rays.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
-        order.sort(&bvh.approach, rays);
+        order.sort(&bvh.ray_clamp, rays);
         let mut start = 0;
         while start < order.rays.len() {
             let packet = Packet::new(simd, &order, order.packet(start));
@@ -92,7 +92,7 @@ pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: 
     let (mut order, mut stacks) = (Order::default(), Stacks::new(bvh.depth));
     occluded.fill(false);
     for (segments, occluded) in segments.chunks(CHUNK).zip(occluded.chunks_mut(CHUNK)) {
-        order.sort(&bvh.approach, segments);
+        order.sort(&bvh.ray_clamp, segments);
         let mut start = 0;
         while start < order.rays.len() {
             let packet = Packet::new(simd, &order, order.packet(start));

@@ -2,7 +2,7 @@
 
 use super::size::RAYS;
 use crate::accel::Ray;
-use crate::accel::approach::{Approach, NearRay};
+use crate::accel::ray_clamp::{ClampedRay, RayClamp};
 use crate::accel::triangle::largest_axis;
 
 /// Kinds of rays: three axes, eight octants.
@@ -12,7 +12,7 @@ const KINDS: usize = 24;
 #[derive(Default)]
 pub(super) struct Order {
     /// Each with its index in the chunk.
-    pub(super) rays: Vec<(NearRay, usize)>,
+    pub(super) rays: Vec<(ClampedRay, usize)>,
     kinds: Vec<u8>,
     /// Indices into `rays`, sorted by kind.
     sorted: Vec<u16>,
@@ -20,12 +20,12 @@ pub(super) struct Order {
 
 impl Order {
     #[inline(always)]
-    pub(super) fn sort(&mut self, approach: &Approach, rays: &[Ray]) {
+    pub(super) fn sort(&mut self, ray_clamp: &RayClamp, rays: &[Ray]) {
         self.rays.clear();
         self.kinds.clear();
         let mut starts = [0; KINDS + 1];
         for (index, ray) in rays.iter().enumerate() {
-            if let Some(near) = approach.ray(ray) {
+            if let Some(near) = ray_clamp.ray(ray) {
                 let kind = kind(&near);
                 starts[usize::from(kind) + 1] += 1;
                 self.kinds.push(kind);
@@ -64,7 +64,7 @@ impl Order {
 
 /// Signs of the direction (bit k: axis k negative), plus eight times the axis of its largest component.
 #[inline(always)]
-fn kind(near: &NearRay) -> u8 {
+fn kind(near: &ClampedRay) -> u8 {
     let direction = near.direction;
     let negative = |component: f32| u8::from(component.is_sign_negative());
     let signs = negative(direction.x) | negative(direction.y) << 1 | negative(direction.z) << 2;

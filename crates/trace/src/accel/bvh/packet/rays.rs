@@ -3,12 +3,12 @@
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use glam::{BVec3A, Vec3A};
-use lightmesh_layout::constants::{BVH_MARGIN, LEAST_COMPONENT};
+use lightmesh_layout::constants::{BVH_MARGIN, MIN_COMPONENT};
 
 use super::order::Order;
 use super::size::GROUPS;
-use crate::accel::approach::NearRay;
 use crate::accel::packet::{LANES, PacketShear};
+use crate::accel::ray_clamp::ClampedRay;
 
 /// Rays of one kind.
 pub(super) struct Packet<'a, S: Simd> {
@@ -58,7 +58,7 @@ impl<'a, S: Simd> Packet<'a, S> {
     }
 
     #[inline(always)]
-    pub(super) fn ray(&self, lane: usize) -> &NearRay {
+    pub(super) fn ray(&self, lane: usize) -> &ClampedRay {
         &self.order.rays[usize::from(self.indices[lane])].0
     }
 
@@ -101,7 +101,7 @@ impl<S: Simd> Group<S> {
 impl<S: Simd> PacketSlabs<S> {
     #[inline(always)]
     fn new(simd: S, origin: [f32x8<S>; 3], direction: [f32x8<S>; 3], axis: usize) -> PacketSlabs<S> {
-        let least = direction[axis].abs() * LEAST_COMPONENT;
+        let least = direction[axis].abs() * MIN_COMPONENT;
         let [x, y, z] = direction;
         let one = f32x8::splat(simd, 1.0);
         let inverse = [

@@ -13,7 +13,7 @@ use super::{Random, scenes, structures};
 /// A region as the reference understands it, in double precision.
 #[derive(Clone, Debug)]
 struct Asked {
-    form: Form,
+    shape: RegionShape,
     origins: Bounds,
     /// Points of `origins` with their normals; none if nothing is cut off.
     points: Vec<(Vec3, Vec3)>,
@@ -23,7 +23,7 @@ struct Asked {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Form {
+enum RegionShape {
     Box,
     Near(f32),
     Shaft(Bounds),
@@ -31,10 +31,10 @@ enum Form {
 
 impl Asked {
     fn region(&self) -> Region {
-        let region = match self.form {
-            Form::Box => Region::within(self.origins),
-            Form::Near(reach) => Region::near(self.origins, reach),
-            Form::Shaft(emitter) => Region::shaft(self.origins, emitter),
+        let region = match self.shape {
+            RegionShape::Box => Region::within(self.origins),
+            RegionShape::Near(reach) => Region::near(self.origins, reach),
+            RegionShape::Shaft(emitter) => Region::shaft(self.origins, emitter),
         };
         region.above(TangentPlanes::new(self.origins.min, self.points.iter().copied(), self.slack))
     }
@@ -42,13 +42,13 @@ impl Asked {
     /// Whether the region, enlarged by a share `more` of all sizes, meets a box.
     fn meets(&self, low: DVec3, high: DVec3, more: f64) -> bool {
         let [min, max] = [self.origins.min, self.origins.max].map(Vec3::as_dvec3);
-        let met = match self.form {
-            Form::Box => low.cmple(max).all() && high.cmpge(min).all(),
-            Form::Near(reach) => {
+        let met = match self.shape {
+            RegionShape::Box => low.cmple(max).all() && high.cmpge(min).all(),
+            RegionShape::Near(reach) => {
                 let apart = (low - max).max(min - high).max(DVec3::ZERO);
                 apart.length_squared() <= f64::from(reach).powi(2) * (1.0 + more) + more * more
             }
-            Form::Shaft(emitter) => {
+            RegionShape::Shaft(emitter) => {
                 shaft_meets([min, max], [emitter.min.as_dvec3(), emitter.max.as_dvec3()], [low, high], more)
             }
         };
@@ -82,15 +82,15 @@ impl Asked {
         })
     }
 
-    /// Whether a triangle meets one of several boxes that make up the form.
+    /// Whether a triangle meets one of several boxes that make up the shape.
     fn meets_triangle(&self, triangle: &Triangle) -> bool {
         let [min, max] = [self.origins.min, self.origins.max].map(Vec3::as_dvec3);
         let meets =
             |min: DVec3, max: DVec3| triangle_meets_box(triangle.corners(), 0.5 * (min + max), 0.5 * (max - min));
-        match self.form {
-            Form::Near(_) => meets(min, max),
-            Form::Box => meets(min, max),
-            Form::Shaft(emitter) => (0..=64).any(|part| {
+        match self.shape {
+            RegionShape::Near(_) => meets(min, max),
+            RegionShape::Box => meets(min, max),
+            RegionShape::Shaft(emitter) => (0..=64).any(|part| {
                 let t = f64::from(part) / 64.0;
                 meets(min.lerp(emitter.min.as_dvec3(), t), max.lerp(emitter.max.as_dvec3(), t))
             }),
@@ -130,13 +130,13 @@ impl Random {
         let center = near + self.signed() * self.pick(&[0.0, 0.3, 2.0]);
         let half = self.half_edges();
         let origins = Bounds { min: center - half, max: center + half };
-        let form = match self.below(3) {
-            0 => Form::Box,
-            1 => Form::Near(self.pick(&[0.0, 1e-3, 0.2, 1.0, 4.0])),
+        let shape = match self.below(3) {
+            0 => RegionShape::Box,
+            1 => RegionShape::Near(self.pick(&[0.0, 1e-3, 0.2, 1.0, 4.0])),
             _ => {
                 let away = self.pick(&[Vec3::ONE, Vec3::ONE, Vec3::X, Vec3::new(0.0, 1.0, 1.0), Vec3::ZERO]);
                 let (center, half) = (center + self.signed() * away * self.pick(&[1.0, 5.0, 20.0]), self.half_edges());
-                Form::Shaft(Bounds { min: center - half, max: center + half })
+                RegionShape::Shaft(Bounds { min: center - half, max: center + half })
             }
         };
         let normals = [0; 5].map(|_| {
@@ -149,7 +149,7 @@ impl Random {
             .map(|_| (center + self.signed() * half, self.pick(&normals[..kinds])))
             .map(|(point, normal)| (point.clamp(origins.min, origins.max), normal))
             .collect();
-        let asked = Asked { form, origins, points, slack: self.pick(&[0.0, 1e-3]), far: None };
+        let asked = Asked { shape, origins, points, slack: self.pick(&[0.0, 1e-3]), far: None };
         let far = asked.region().bounds().extent().as_dvec3().element_sum();
         let known = normals.iter().filter(|normal| asked.points.iter().any(|point| point.1 == **normal));
         let distinct = known.map(|normal| normal.to_array().map(f32::to_bits)).collect::<BTreeSet<_>>().len();

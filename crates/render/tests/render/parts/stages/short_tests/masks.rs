@@ -5,15 +5,16 @@ use lightmesh_render::accel::Hit;
 use lightmesh_render::backend::{Backend, Cpu, Wave};
 use lightmesh_render::light_mesh::{Lattice, LightMesh, Template, point_of};
 use lightmesh_render::{
-    Acceleration, CellGroups, Job, LightGroup, Masks, PreparedScene, RayList, Sampling, ShortTests, Unobserved, View,
+    Acceleration, CellGroups, LightGroup, Masks, PreparedScene, RayList, RenderContext, Sampling, ShortTests,
+    Unobserved, View,
 };
 use lightmesh_scene::Scene;
 use lightmesh_testkit::{perforated, runs_all, soup};
 
 const ACCELERATIONS: [Acceleration; 3] = [Acceleration::Bvh, Acceleration::Grid(None), Acceleration::BruteForce];
 
-fn job() -> Job<'static> {
-    Job::new(&Unobserved, Sampling { samples: 4, seed: 0, spread: false })
+fn context() -> RenderContext<'static> {
+    RenderContext::new(&Unobserved, Sampling { samples: 4, seed: 0, spread: false })
 }
 
 fn mesh(scene: &PreparedScene, step: f32, radius: f32) -> LightMesh {
@@ -27,7 +28,7 @@ fn look(scene: &PreparedScene, pixels: u32) -> (RayList, Vec<Hit>) {
     let view = View::new(&scene.scene.cameras[0], [pixels, pixels]);
     let backend = Cpu;
     let rays = backend.camera_rays(&view, 0..pixels, 0).unwrap();
-    let hits = backend.primary_rays(&job(), scene, &rays).unwrap();
+    let hits = backend.primary_rays(&context(), scene, &rays).unwrap();
     (rays, hits)
 }
 
@@ -37,8 +38,8 @@ fn masks(
     mesh: &LightMesh,
     short_tests: ShortTests,
 ) -> (CellGroups, Masks) {
-    let job = job().with_short_tests(short_tests);
-    let wave = Wave { job: &job, scene, rays, hits, lights: LightGroup::ALL, parts: 1 };
+    let context = context().with_short_tests(short_tests);
+    let wave = Wave { context: &context, scene, rays, hits, lights: LightGroup::ALL, parts: 1 };
     let cells = Cpu.cells(&wave, mesh).unwrap();
     let masks = Cpu.short_tests(&wave, &cells, mesh).unwrap();
     (cells, masks)

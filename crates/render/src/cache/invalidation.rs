@@ -8,12 +8,12 @@ use glam::Vec3;
 use lightmesh_layout::constants::{BRICK_BITS, POINT_BITS};
 use lightmesh_scene::{Bounds, LightKind};
 
+use crate::deformation::union;
 use crate::light_mesh::{BrickKey, Lattice, point_of};
-use crate::moved::around_both;
 use crate::prepared::PreparedGeometry;
 
 /// Tells which bricks of light points a motion invalidates for a light.
-pub struct Noticed<'a> {
+pub struct Invalidation<'a> {
     /// Around what moved, and enlarged for rounding.
     boxes: Vec<Bounds>,
     lattice: &'a Lattice,
@@ -21,14 +21,14 @@ pub struct Noticed<'a> {
     far: f32,
 }
 
-impl<'a> Noticed<'a> {
+impl<'a> Invalidation<'a> {
     /// By what moved in `geometry`, which has light points at `lattice`.
-    pub(crate) fn new(boxes: &[Bounds], lattice: &'a Lattice, geometry: &PreparedGeometry) -> Noticed<'a> {
-        let everything = boxes.iter().copied().fold(geometry.bounds, around_both);
+    pub(crate) fn new(boxes: &[Bounds], lattice: &'a Lattice, geometry: &PreparedGeometry) -> Invalidation<'a> {
+        let everything = boxes.iter().copied().fold(geometry.bounds, union);
         let size = everything.farthest().max(everything.diagonal());
         let margin = 1e-3 * lattice.step + 1e-5 * size;
         let enlarged = |bounds: &Bounds| Bounds { min: bounds.min - margin, max: bounds.max + margin };
-        Noticed { boxes: boxes.iter().map(enlarged).collect(), lattice, far: 4.0 * (size + lattice.step) }
+        Invalidation { boxes: boxes.iter().map(enlarged).collect(), lattice, far: 4.0 * (size + lattice.step) }
     }
 
     /// Whether what light points of a brick see of a light of this kind may have changed.

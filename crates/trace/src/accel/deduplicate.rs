@@ -10,7 +10,7 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::Triangle;
 
 /// Their positions in `triangles`, ascending.
-pub fn distinct(triangles: &[Triangle]) -> Vec<u32> {
+pub fn deduplicate(triangles: &[Triangle]) -> Vec<u32> {
     let mut usable: Vec<(u64, u32)> = triangles
         .par_iter()
         .enumerate()

@@ -2,14 +2,14 @@
 
 /// The visibility of every light at every used light point.
 #[derive(Clone, Debug, Default)]
-pub struct Lit {
+pub struct LightPointVisibility {
     /// One entry per light.
-    pub lights: Vec<LitBy>,
+    pub lights: Vec<VisibilityOfLight>,
 }
 
 /// The visibility of one light at the used light points.
 #[derive(Clone, Debug)]
-pub enum LitBy {
+pub enum VisibilityOfLight {
     /// Lit or not: one word per brick, addressed like the used-bitmap, so that no rank is needed.
     Bits(Vec<u64>),
     /// Shadow rays out of `samples` that reached the light, by rank.

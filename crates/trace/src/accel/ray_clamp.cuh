@@ -1,10 +1,10 @@
-// Moves a ray close to the triangles before it is traced: twin of approach.rs.
+// Moves a ray close to the triangles before it is traced: twin of ray_clamp.rs.
 #pragma once
 
 #include "accel/ray.cuh"
 
 // A ray close to the triangles, and how its parameter relates to that of the original ray: t = start + t' · scale.
-struct NearRay {
+struct ClampedRay {
     Ray ray;
     // Zero if the ray cannot hit anything.
     double scale;
@@ -23,8 +23,8 @@ DEVICE double approach_start(float radius_of_triangles, DVec3 origin, DVec3 dire
     return nearest > 0.0 && !passes_by ? nearest - 2.0 * sphere / length(direction) : -1.0;
 }
 
-COLD NearRay far_ray(Vec3 center, float radius, Ray ray) {
-    NearRay near = {ray, 0.0, 0.0};
+COLD ClampedRay far_ray(Vec3 center, float radius, Ray ray) {
+    ClampedRay near = {ray, 0.0, 0.0};
     const double largest = max_element(abs(ray.direction));
     if (!(is_finite(ray.origin) && is_finite(ray.direction) && largest > 0.0 && ray.t_max > 0.0f))
         return near;
@@ -43,18 +43,18 @@ COLD NearRay far_ray(Vec3 center, float radius, Ray ray) {
 }
 
 // The ray to trace.
-DEVICE NearRay near_ray(const Approach &approach, const Ray &ray) {
+DEVICE ClampedRay clamped_ray(const RayClamp &ray_clamp, const Ray &ray) {
     const float largest = max_element(abs(ray.direction));
-    const Vec3 distance = abs(ray.origin - approach.center);
-    const float reach = REACH * approach.radius;
+    const Vec3 distance = abs(ray.origin - ray_clamp.center);
+    const float reach = REACH * ray_clamp.radius;
     const bool near = distance.x <= reach && distance.y <= reach && distance.z <= reach;
     const bool usual = largest >= 1.0f / LARGEST_DIRECTION && largest <= LARGEST_DIRECTION && is_finite(ray.direction);
     if (near && usual && ray.t_max > 0.0f)
-        return NearRay{ray, 1.0, 0.0};
-    return far_ray(approach.center, approach.radius, ray);
+        return ClampedRay{ray, 1.0, 0.0};
+    return far_ray(ray_clamp.center, ray_clamp.radius, ray);
 }
 
 // Converts the parameter `t` of the near ray to that of the original ray.
-DEVICE float asked_parameter(const NearRay &near, float t) {
+DEVICE float asked_parameter(const ClampedRay &near, float t) {
     return near.start != 0.0 || near.scale != 1.0 ? (float)(near.start + (double)t * near.scale) : t;
 }

@@ -1,8 +1,8 @@
-//! Whether two samples lie on one surface, and whether it mirrors. Twin: `alike.cuh`.
+//! Whether two samples lie on one surface, and whether it mirrors. Twin: `same_surface.cuh`.
 
 use glam::Vec3;
 use lightmesh_layout::constants::{
-    FAINT_MIRROR, MOST_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT,
+    FAINT_MIRROR, MAX_SHARED, NEAR_COSINE, NEAR_HEIGHT, SAME_COSINE, SAME_FACET_COSINE, SAME_HEIGHT,
 };
 use lightmesh_scene::Material;
 use lightmesh_trace::accel::{Hit, Ray};
@@ -79,7 +79,7 @@ impl Facet {
 }
 
 /// Stands for the centre of a pixel in place of a sample's number.
-const CENTER: usize = MOST_SHARED as usize;
+const CENTER: usize = MAX_SHARED as usize;
 
 /// What the samples of a pixel and its centre see.
 pub(crate) struct Surfaces<'a> {

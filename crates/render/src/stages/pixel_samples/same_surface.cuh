@@ -1,4 +1,4 @@
-// The samples of a pixel, whether two of them lie on one surface, and whether it mirrors: twin of alike.rs, and of antialiasing.rs.
+// The samples of a pixel, whether two of them lie on one surface, and whether it mirrors: twin of same_surface.rs, and of antialiasing.rs.
 #pragma once
 
 #include "data/rays.cuh"

@@ -13,21 +13,21 @@ use crate::standby::exchange;
 /// What a program has written that ended early. Paths are those that were given for the outputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Abandoned {
+pub struct Aborted {
     /// Outputs that are there.
     pub written: Vec<PathBuf>,
     /// A pipe or device that has a part of an output, or at most that.
     pub partial: Option<PathBuf>,
 }
 
-/// From now on, the names of outputs are recorded for [`abandon`]. For programs that may have to end early.
+/// From now on, the names of outputs are recorded for [`abort`]. For programs that may have to end early.
 pub fn record_written() {
     registry().written.get_or_insert_default();
 }
 
-/// An output that [`abandon`] publishes, such as results so far; it replaces an earlier one, and [`publish`](crate::publish())
+/// An output that [`abort`] publishes, such as results so far; it replaces an earlier one, and [`publish`](crate::publish())
 /// replaces it. Only a file can stand by: what is written through would have to wait for a reader.
-pub fn stand_by(output: Option<Ready>) {
+pub fn publish_on_abort(output: Option<Ready>) {
     let earlier = exchange(output, &mut registry());
     // The registry is free again.
     drop(earlier);
@@ -36,7 +36,7 @@ pub fn stand_by(output: Option<Ready>) {
 /// Publishes the output that stands by, and removes all temporary files of this process, for good: whoever creates,
 /// publishes or removes an output afterwards, or calls this again, waits forever. To be called just before the process
 /// exits, from any thread.
-pub fn abandon() -> Abandoned {
+pub fn abort() -> Aborted {
     let mut registry = registry();
     if let Some((path, Step::Rename(file, target))) = exchange(None, &mut registry).map(Ready::step) {
         if file.rename(&target, &mut registry).is_ok() {
@@ -51,5 +51,5 @@ pub fn abandon() -> Abandoned {
     }
     let (written, partial) = (registry.written.take().unwrap_or_default(), registry.partial.take());
     std::mem::forget(registry);
-    Abandoned { written, partial }
+    Aborted { written, partial }
 }

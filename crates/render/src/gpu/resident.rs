@@ -68,16 +68,16 @@ impl<T, Copy> Resident<T, Copy> {
     }
 
     /// Keeps a copy in place of an earlier one.
-    pub(super) fn keep(&mut self, original: &Arc<T>, copy: Arc<Copy>) {
+    pub(super) fn insert(&mut self, original: &Arc<T>, copy: Arc<Copy>) {
         self.copies.retain(|(known, _)| known.as_ptr() != Arc::as_ptr(original));
         self.copies.push((Arc::downgrade(original), copy));
     }
 }
 
 /// Buffers that are only kept.
-pub(super) type Buffers<R> = Vec<Box<dyn Held<R>>>;
+pub(super) type Buffers<R> = Vec<Box<dyn AnyBuffer<R>>>;
 
 /// A buffer of any type.
-pub(super) trait Held<R>: Send + Sync {}
+pub(super) trait AnyBuffer<R>: Send + Sync {}
 
-impl<R: Runtime, T: 'static> Held<R> for Buffer<R, T> {}
+impl<R: Runtime, T: 'static> AnyBuffer<R> for Buffer<R, T> {}

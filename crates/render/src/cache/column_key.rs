@@ -2,12 +2,12 @@
 
 use lightmesh_scene::{Light, LightKind};
 
-use crate::job::Sampling;
+use crate::render_context::Sampling;
 use crate::sampling::body;
 
 /// What determines the values of a column, apart from the light's index, which is the column's.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct ColumnKey {
     /// The shape of the light.
     pub kind: LightKind,
     /// Whether it is an emissive ball, which hides none of its light.
@@ -16,10 +16,10 @@ pub struct Seen {
     pub sampling: Option<(u32, u64)>,
 }
 
-impl Seen {
-    pub(crate) fn of(light: &Light, sampling: &Sampling) -> Seen {
+impl ColumnKey {
+    pub(crate) fn of(light: &Light, sampling: &Sampling) -> ColumnKey {
         let sampling = light.has_size().then_some((sampling.samples, sampling.seed));
-        Seen { kind: light.kind.clone(), glows: body(light) > 0.0, sampling }
+        ColumnKey { kind: light.kind.clone(), glows: body(light) > 0.0, sampling }
     }
 
     /// The shape of the light.

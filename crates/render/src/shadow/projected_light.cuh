@@ -1,4 +1,4 @@
-// What one surface point sees of one light: twin of sight.rs.
+// What one surface point sees of one light: twin of projected_light.rs.
 #pragma once
 
 #include "accel/region.cuh"
@@ -58,7 +58,7 @@ DEVICE float middle_row(float share) {
 }
 
 // The samples of a light's rectangle.
-DEVICE void rectangle_sight(Sight &sight, const Light &light, unsigned lines, float aside) {
+DEVICE void project_rectangle(Sight &projected, const Light &light, unsigned lines, float aside) {
     Vec3 u = light.scale * light.half_u, v = light.scale * light.half_v;
     if (length_squared(u) < length_squared(v)) {
         const Vec3 longer = v;
@@ -66,32 +66,32 @@ DEVICE void rectangle_sight(Sight &sight, const Light &light, unsigned lines, fl
         u = longer;
     }
     const Vec3 step = v / (float)lines;
-    sight.inside = 1.0f - aside;
-    sight.center = sight.center + 2.0f * aside * step;
-    sight.along = u + step;
-    sight.across = v;
+    projected.inside = 1.0f - aside;
+    projected.center = projected.center + 2.0f * aside * step;
+    projected.along = u + step;
+    projected.across = v;
 }
 
 // The samples of a disc about `center`.
-DEVICE void disc_sight(Sight &sight, const Light &light, Vec3 center, float reach, unsigned lines, float turn, float aside) {
+DEVICE void project_disc(Sight &projected, const Light &light, Vec3 center, float reach, unsigned lines, float turn, float aside) {
     Vec3 tangent = light.half_u, bitangent = light.half_v;
     if (light.kind == Light::POINT || light.kind == Light::SPHERE)
         facing(center, tangent, bitangent);
     const float square = turn * turn;
     const float cosine = (1.0f - square) / (1.0f + square), sine = 2.0f * turn / (1.0f + square);
     const float radius = light.scale * disc_radius(light, center, reach);
-    sight.along = radius * (cosine * tangent + sine * bitangent);
-    sight.across = radius * (cosine * bitangent - sine * tangent);
+    projected.along = radius * (cosine * tangent + sine * bitangent);
+    projected.across = radius * (cosine * bitangent - sine * tangent);
     if (lines == 1) {
         const float y = middle_row(2.0f * aside - 1.0f);
-        sight.center = sight.center + y * sight.across;
-        sight.along = sqrtf(larger(1.0f - y * y, 0.0f)) * sight.along;
+        projected.center = projected.center + y * projected.across;
+        projected.along = sqrtf(larger(1.0f - y * y, 0.0f)) * projected.along;
     }
 }
 
 // Light number `index` as `point` sees it; `key` selects the random pattern, `lines` is the number of rows of samples.
-DEVICE Sight sight_of(const Scene &scene, const Sampling &sampling, unsigned index, Shape shape, unsigned lines,
-                      const SurfacePoint &point, unsigned long long key) {
+DEVICE Sight projected_light_of(const Scene &scene, const Sampling &sampling, unsigned index, Shape shape, unsigned lines,
+                                const SurfacePoint &point, unsigned long long key) {
     const Light &light = scene.lights[index];
     const float reach = scene_reach(scene, point.origin);
     const Vec3 target = seen_center(light, point.origin, reach);
@@ -99,52 +99,53 @@ DEVICE Sight sight_of(const Scene &scene, const Sampling &sampling, unsigned ind
     const float length = max_element(abs(center));
     const float error = GAMMA_32 * max_element(max(abs(point.origin), abs(target)));
     const float spared = error < 0.5f * length ? error / length : 0.5f;
-    Sight sight = {};
-    sight.center = light.scale * center;
-    sight.end = light.scale / (1.0f - spared);
-    sight.inside = 1.0f;
+    Sight projected = {};
+    projected.center = light.scale * center;
+    projected.end = light.scale / (1.0f - spared);
+    projected.inside = 1.0f;
     if (shape == SHAPE_POINT)
-        return sight;
+        return projected;
     const unsigned long long random = random_bits(sampling.seed, key, index);
-    sight.shift = (float)((unsigned)random & 0xffff) / SHIFTS;
-    sight.choice = (unsigned)(random >> 16) & 0xffff;
-    const float aside = (float)sight.choice / SHIFTS, turn = (float)((unsigned)(random >> 32) & 0xffff) / (0.5f * SHIFTS) - 1.0f;
+    projected.shift = (float)((unsigned)random & 0xffff) / SHIFT_STEPS;
+    projected.choice = (unsigned)(random >> 16) & 0xffff;
+    const float aside = (float)projected.choice / SHIFT_STEPS,
+        turn = (float)((unsigned)(random >> 32) & 0xffff) / (0.5f * SHIFT_STEPS) - 1.0f;
     if (shape == SHAPE_RECTANGLE)
-        rectangle_sight(sight, light, lines, aside);
+        project_rectangle(projected, light, lines, aside);
     else
-        disc_sight(sight, light, center, reach, lines, turn, aside);
-    return sight;
+        project_disc(projected, light, center, reach, lines, turn, aside);
+    return projected;
 }
 
-DEVICE float shift_of(const Sight &sight, const SampleRows &set, unsigned row) {
-    const float shift = sight.shift + set.shift[row];
+DEVICE float shift_of(const Sight &projected, const SampleRows &set, unsigned row) {
+    const float shift = projected.shift + set.shift[row];
     return shift >= 1.0f ? shift - 1.0f : shift;
 }
 
 // The place of x = 0 in a row of samples.
-DEVICE float row_offset(const Sight &sight, const SampleRows &set, unsigned row) {
-    return set.half[row] - shift_of(sight, set, row);
+DEVICE float row_offset(const Sight &projected, const SampleRows &set, unsigned row) {
+    return set.half[row] - shift_of(projected, set, row);
 }
 
 // The sample at place `place` of row number `row`, seen from the point and not scaled.
-DEVICE Vec3 sample_at(const Sight &sight, const SampleRows &set, unsigned row, unsigned place, float scale) {
-    const float x = ((float)place - row_offset(sight, set, row)) / set.density[row];
-    return (sight.center + x * sight.along + set.y[row] * sight.across) / scale;
+DEVICE Vec3 sample_at(const Sight &projected, const SampleRows &set, unsigned row, unsigned place, float scale) {
+    const float x = ((float)place - row_offset(projected, set, row)) / set.density[row];
+    return (projected.center + x * projected.along + set.y[row] * projected.across) / scale;
 }
 
 // The samples of a row that count, as the lowest bits.
-DEVICE unsigned valid_samples(const Sight &sight, const SampleRows &set, unsigned row) {
+DEVICE unsigned valid_samples(const Sight &projected, const SampleRows &set, unsigned row) {
     const unsigned count = set.count[row];
     unsigned bits = (1u << count) - 1;
     // What enters a rectangle, and what leaves it.
     if (row == set.entering || row == set.leaving) {
-        const unsigned inside = (unsigned)larger(ceilf(sight.inside * (float)count - shift_of(sight, set, row)), 0.0f);
+        const unsigned inside = (unsigned)larger(ceilf(projected.inside * (float)count - shift_of(projected, set, row)), 0.0f);
         const unsigned before = (1u << min(inside, count)) - 1;
         bits &= row == set.leaving ? before : ~before;
     }
     // Some rows, one after the other from any, have a sample less.
-    if ((set.line[row] + sight.choice) % set.lines < set.surplus)
-        bits &= ~(1u << (set.line[row] + sight.choice / set.lines) % count);
+    if ((set.line[row] + projected.choice) % set.lines < set.surplus)
+        bits &= ~(1u << (set.line[row] + projected.choice / set.lines) % count);
     return bits;
 }
 
@@ -159,7 +160,7 @@ DEVICE Vec3 half_extent(const Light &light, float reach) {
         return abs(light.half_u) + abs(light.half_v);
     if (light.kind == Light::DISK || light.kind == Light::DIRECTIONAL) {
         const Vec3 rest = max(Vec3{1.0f, 1.0f, 1.0f} - light.direction * light.direction, splat(0.0f));
-        const float radius = GROWN * (light.kind == Light::DISK ? light.radius : reach * light.radius);
+        const float radius = ENLARGEMENT * (light.kind == Light::DISK ? light.radius : reach * light.radius);
         return radius * Vec3{rough_root(rest.x), rough_root(rest.y), rough_root(rest.z)};
     }
     return splat(light.kind == Light::POINT || light.kind == Light::SPHERE ? ball_extent(light) : 0.0f);
@@ -179,7 +180,7 @@ DEVICE Bounds emitter_bounds(const Scene &scene, const Light &light, Shape shape
 }
 
 // Where everything is that may hide an emitter from a point of `origins`. `memory` is for its faces.
-DEVICE Region<ShaftForm> shadow_region(const Bounds &origins, const Bounds &emitter, ShaftFaces *memory) {
+DEVICE Region<ShaftShape> shadow_region(const Bounds &origins, const Bounds &emitter, ShaftFaces *memory) {
     const Vec3 extent = max(origins.high, emitter.high) - min(origins.low, emitter.low);
     const Vec3 margin = splat(SHADOW_MARGIN * max_element(extent));
     return region_shaft(Bounds{origins.low - margin, origins.high + margin}, Bounds{emitter.low - margin, emitter.high + margin},

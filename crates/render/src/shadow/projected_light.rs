@@ -1,5 +1,5 @@
 //! What one surface point sees of one light: the emitter as a flat shape on which samples lie in [rows](super::rows). Twin:
-//! `sight.cuh`.
+//! `projected_light.cuh`.
 //!
 //! Seen from a point, a ball is the disc through its centre that faces the point, evenly bright; so is a point light with a spread, and a
 //! sun of an angular size. An emissive ball is the disc that covers the same directions [before it](crate::sampling::before_body): it hides none of its own light.
@@ -11,13 +11,13 @@
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use glam::Vec3;
-use lightmesh_layout::constants::{ASIDE_OF_BODY, GAMMA_32, GROWN, SHADOW_MARGIN, SHIFTS};
+use lightmesh_layout::constants::{ASIDE_OF_BODY, ENLARGEMENT, GAMMA_32, SHADOW_MARGIN, SHIFT_STEPS};
 use lightmesh_layout::scene::SampleRows;
 use lightmesh_scene::{Bounds, Light, LightKind};
 use lightmesh_trace::accel::Region;
 use lightmesh_trace::simd::{Axes, difference, dot, scaled, splat};
 
-use super::Aim;
+use super::ShadowTarget;
 use super::rows::Rows;
 use super::terminator::ShadowPoint;
 use crate::data::wave::HostWave;
@@ -38,9 +38,9 @@ pub(crate) enum Shape {
 
 impl Shape {
     /// Of a light that rays are aimed at.
-    pub(crate) fn of(aim: &Aim, light: &Light) -> Shape {
+    pub(crate) fn of(target: &ShadowTarget, light: &Light) -> Shape {
         match light.kind {
-            _ if !aim.is_spread_over(light) => Shape::Point,
+            _ if !target.is_spread_over(light) => Shape::Point,
             LightKind::Rectangle { .. } => Shape::Rectangle,
             _ => Shape::Disc,
         }
@@ -73,12 +73,12 @@ pub(crate) struct Emitter<'a> {
 
 impl<'a> Emitter<'a> {
     /// The lights of a wave that rays are aimed at.
-    pub(crate) fn all(wave: &HostWave<'a>, aim: &Aim, rows: &'a Rows) -> Vec<Emitter<'a>> {
+    pub(crate) fn all(wave: &HostWave<'a>, target: &ShadowTarget, rows: &'a Rows) -> Vec<Emitter<'a>> {
         let geometry = &wave.scene.geometry;
         let emitter = |(index, light): (usize, &'a Light)| {
-            let shape = Shape::of(aim, light);
+            let shape = Shape::of(target, light);
             let sets = shape.sets(rows);
-            let (samples, seed) = (aim.samples(light), wave.job.sampling.seed);
+            let (samples, seed) = (target.samples(light), wave.context.sampling.seed);
             Emitter { index, light, shape, sets, scale: scale(geometry, light), spread: spread(light), samples, seed }
         };
         let lights = wave.group();
@@ -113,11 +113,11 @@ impl<'a> Emitter<'a> {
 
     /// As the surface point of ray number `ray` sees it.
     #[inline(always)]
-    pub(crate) fn sight(&self, wave: &HostWave, ray: usize, point: &SurfacePoint) -> Sight {
-        let reach = wave.scene.geometry.reach(point.origin);
+    pub(crate) fn projected(&self, wave: &HostWave, ray: usize, point: &SurfacePoint) -> ProjectedLight {
+        let reach = wave.scene.geometry.sun_distance(point.origin);
         let lines = self.sets.first().map_or(1, |set| set.lines);
         let random = (self.seed, wave.rays.key(ray));
-        Sight::new((self.index, self.light), (self.shape, lines), point, random, (reach, self.scale))
+        ProjectedLight::new((self.index, self.light), (self.shape, lines), point, random, (reach, self.scale))
     }
 
     /// Which of eight surface points all of a disc is in front of, and which it is behind: a bit each, none where neither is certain.
@@ -131,7 +131,7 @@ impl<'a> Emitter<'a> {
     ) -> (u32, u32) {
         let (way, spread) = match self.light.kind {
             LightKind::Directional { direction, .. } => {
-                let (center, far) = geometry.reach_parameters();
+                let (center, far) = geometry.sun_distance_parameters();
                 let away = difference(origin, splat(simd, center));
                 let reach = (away[0].abs() + away[1].abs() + away[2].abs()) * 2.0 + far;
                 (scaled(reach, splat(simd, -direction)), reach * self.spread)
@@ -142,7 +142,7 @@ impl<'a> Emitter<'a> {
             }
         };
         let height = dot(normal, way);
-        let room = spread * GROWN + (way[0].abs() + way[1].abs() + way[2].abs()) * (GROWN - 1.0);
+        let room = spread * ENLARGEMENT + (way[0].abs() + way[1].abs() + way[2].abs()) * (ENLARGEMENT - 1.0);
         (height.simd_gt(room).to_bitmask() as u32, height.simd_lt(-room).to_bitmask() as u32)
     }
 
@@ -162,15 +162,15 @@ impl<'a> Emitter<'a> {
         mut take: impl FnMut(u32, Vec3),
     ) {
         if self.is_point() {
-            take(0, seen_center(self.light, point.origin, wave.scene.geometry.reach(point.origin)));
+            take(0, seen_center(self.light, point.origin, wave.scene.geometry.sun_distance(point.origin)));
             return;
         }
-        let sight = self.sight(wave, ray, point);
+        let projected = self.projected(wave, ray, point);
         for (number, set) in (0..).zip(self.sets) {
             for row in 0..set.rows as usize {
-                let mut rest = sight.valid(set, row);
+                let mut rest = projected.valid(set, row);
                 while rest != 0 {
-                    take(number, point.origin + sight.sample(set, row, rest.trailing_zeros(), self.scale));
+                    take(number, point.origin + projected.sample(set, row, rest.trailing_zeros(), self.scale));
                     rest &= rest - 1;
                 }
             }
@@ -191,7 +191,7 @@ impl<'a> Emitter<'a> {
 
     /// A box around its samples as seen from `origins`. A directional light is as far away as from the point where it is farthest.
     pub(crate) fn bounds(&self, geometry: &PreparedGeometry, origins: &Bounds) -> Bounds {
-        let (center, far) = geometry.reach_parameters();
+        let (center, far) = geometry.sun_distance_parameters();
         let apart = (origins.min - center).abs().max((origins.max - center).abs());
         let reach = far + 2.0 * apart.element_sum();
         let half = if self.is_point() { Vec3::ZERO } else { half_extent(self.light, reach) };
@@ -265,7 +265,7 @@ fn shadow_of_disc(normal: Vec3) -> Vec3 {
 
 /// A light as one surface point sees it: samples are at `center + x · along + y · across`, seen from the point and scaled.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Sight {
+pub struct ProjectedLight {
     /// Its centre.
     pub center: Vec3,
     /// From the centre to the place with x = 1: half of its width along the rows.
@@ -282,7 +282,7 @@ pub struct Sight {
     pub choice: u32,
 }
 
-impl Sight {
+impl ProjectedLight {
     /// Of light number `index` from `point`; `key` selects the random pattern, `reach` is the distance of a directional light.
     #[inline(always)]
     pub(crate) fn new(
@@ -291,43 +291,48 @@ impl Sight {
         point: &SurfacePoint,
         (seed, key): (u64, u64),
         (reach, scale): (f32, f32),
-    ) -> Sight {
+    ) -> ProjectedLight {
         let target = seen_center(light, point.origin, reach);
         let center = target - point.origin;
         // As for rays: see `long_segment`.
         let length = center.abs().max_element();
         let error = GAMMA_32 * point.origin.abs().max(target.abs()).max_element();
         let spared = if error < 0.5 * length { error / length } else { 0.5 };
-        let mut sight = Sight { center: scale * center, end: scale / (1.0 - spared), inside: 1.0, ..Sight::default() };
+        let mut projected = ProjectedLight {
+            center: scale * center,
+            end: scale / (1.0 - spared),
+            inside: 1.0,
+            ..ProjectedLight::default()
+        };
         if shape == Shape::Point {
-            return sight;
+            return projected;
         }
         let random = random_bits(seed, key, index);
-        sight.shift = (random as u32 & 0xffff) as f32 / SHIFTS;
-        sight.choice = (random >> 16) as u32 & 0xffff;
-        let aside = sight.choice as f32 / SHIFTS;
+        projected.shift = (random as u32 & 0xffff) as f32 / SHIFT_STEPS;
+        projected.choice = (random >> 16) as u32 & 0xffff;
+        let aside = projected.choice as f32 / SHIFT_STEPS;
         if let (Shape::Rectangle, LightKind::Rectangle { half_u, half_v, .. }) = (shape, &light.kind) {
             let (u, v) = longest_first(scale * *half_u, scale * *half_v);
             let step = v / lines as f32;
-            sight.inside = 1.0 - aside;
-            sight.center += 2.0 * aside * step;
-            (sight.along, sight.across) = (u + step, v);
-            return sight;
+            projected.inside = 1.0 - aside;
+            projected.center += 2.0 * aside * step;
+            (projected.along, projected.across) = (u + step, v);
+            return projected;
         }
         let (tangent, bitangent, radius) = disc_of(light, center, reach);
         // A quarter turn to either side: rows look the same from both ends.
-        let turn = ((random >> 32) as u32 & 0xffff) as f32 / (0.5 * SHIFTS) - 1.0;
+        let turn = ((random >> 32) as u32 & 0xffff) as f32 / (0.5 * SHIFT_STEPS) - 1.0;
         let square = turn * turn;
         let (cos, sin) = ((1.0 - square) / (1.0 + square), 2.0 * turn / (1.0 + square));
         let radius = scale * radius;
-        sight.along = radius * (cos * tangent + sin * bitangent);
-        sight.across = radius * (cos * bitangent - sin * tangent);
+        projected.along = radius * (cos * tangent + sin * bitangent);
+        projected.across = radius * (cos * bitangent - sin * tangent);
         if lines == 1 {
             let y = middle_row(2.0 * aside - 1.0);
-            sight.center += y * sight.across;
-            sight.along *= (1.0 - y * y).max(0.0).sqrt();
+            projected.center += y * projected.across;
+            projected.along *= (1.0 - y * y).max(0.0).sqrt();
         }
-        sight
+        projected
     }
 
     /// The sample at place `place` of row number `row`, seen from the point and not scaled.
@@ -429,7 +434,7 @@ fn middle_row(share: f32) -> f32 {
 
 /// The power of two by which vectors to `light` are multiplied.
 pub(crate) fn scale(geometry: &PreparedGeometry, light: &Light) -> f32 {
-    let (center, far) = geometry.reach_parameters();
+    let (center, far) = geometry.sun_distance_parameters();
     let away = light.position().map_or(4.0 * far, |position| (position - center).abs().max_element() + far);
     let exponent = |length: f32| (length.max(f32::MIN_POSITIVE).to_bits() >> 23) as i32 - 127;
     let exponent = (-2 * exponent(far) - exponent(away)).clamp(-120, 120);

@@ -6,10 +6,10 @@ use lightmesh_scene::{Bounds, Geometry, Instance};
 use lightmesh_trace::accel::Triangle;
 
 /// Boxes around what moved, at most: more are put together.
-const MOST_BOXES: usize = 64;
+const MAX_BOXES: usize = 64;
 
 /// Whether two geometries are the same but for the places of their vertices, and for normals.
-pub(crate) fn differ_by_places(before: &Geometry, now: &Geometry) -> bool {
+pub(crate) fn differs_only_in_positions(before: &Geometry, now: &Geometry) -> bool {
     let (a, b) = (&before.mesh, &now.mesh);
     before.origin == now.origin
         && before.textures.are_shared_with(&now.textures)
@@ -48,8 +48,8 @@ pub(crate) fn boxes([old, new]: [&Geometry; 2], before: &[Triangle], now: &[Tria
         from = end;
     }
     boxes.extend(boxes_of_instances([old, new], before, now));
-    let together = boxes.len().div_ceil(MOST_BOXES).max(1);
-    boxes.chunks(together).map(|some| some.iter().copied().reduce(around_both).unwrap_or(Bounds::EMPTY)).collect()
+    let together = boxes.len().div_ceil(MAX_BOXES).max(1);
+    boxes.chunks(together).map(|some| some.iter().copied().reduce(union).unwrap_or(Bounds::EMPTY)).collect()
 }
 
 /// The same of instances: those that are elsewhere, and those of shapes that have changed.
@@ -67,7 +67,7 @@ fn boxes_of_instances<'a>(
         before[shapes.clone()].iter().zip(&now[shapes]).any(|(before, now)| places(before) != places(now));
     let pairs = old.mesh.instances.list().iter().zip(new.mesh.instances.list());
     let moved = pairs.filter(move |(old, new)| old.place != new.place || (any_changed && has_changed(new)));
-    moved.map(|(old, new)| around_both(old.bounds, new.bounds))
+    moved.map(|(old, new)| union(old.bounds, new.bounds))
 }
 
 /// The corners of a triangle, to be compared bit by bit.
@@ -75,6 +75,6 @@ fn places(triangle: &Triangle) -> [[u32; 3]; 3] {
     triangle.corners().map(|corner| corner.to_array().map(f32::to_bits))
 }
 
-pub(crate) fn around_both(a: Bounds, b: Bounds) -> Bounds {
+pub(crate) fn union(a: Bounds, b: Bounds) -> Bounds {
     Bounds { min: a.min.min(b.min), max: a.max.max(b.max) }
 }

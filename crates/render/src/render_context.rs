@@ -38,7 +38,7 @@ impl Sampling {
 }
 
 /// One image being rendered.
-pub struct Job<'a> {
+pub struct RenderContext<'a> {
     /// The observer of this render.
     pub observer: &'a dyn Observer,
     /// How area lights are sampled.
@@ -61,12 +61,12 @@ pub struct Job<'a> {
     stopped: AtomicBool,
 }
 
-impl<'a> Job<'a> {
-    /// A job that has done nothing yet.
-    pub fn new(observer: &'a dyn Observer, sampling: Sampling) -> Job<'a> {
+impl<'a> RenderContext<'a> {
+    /// The context of an image of which nothing is done yet.
+    pub fn new(observer: &'a dyn Observer, sampling: Sampling) -> RenderContext<'a> {
         let (short_tests, shadow_tests) = (ShortTests::default(), ShadowTests::default());
         let (tally, work) = (Tally::default(), Work::new());
-        Job {
+        RenderContext {
             observer,
             sampling,
             short_tests,
@@ -81,23 +81,23 @@ impl<'a> Job<'a> {
     }
 
     /// The same with another evaluation of short tests.
-    pub fn with_short_tests(self, short_tests: ShortTests) -> Job<'a> {
-        Job { short_tests, ..self }
+    pub fn with_short_tests(self, short_tests: ShortTests) -> RenderContext<'a> {
+        RenderContext { short_tests, ..self }
     }
 
     /// The same with another test of the samples of lights.
-    pub fn with_shadow_tests(self, shadow_tests: ShadowTests) -> Job<'a> {
-        Job { shadow_tests, ..self }
+    pub fn with_shadow_tests(self, shadow_tests: ShadowTests) -> RenderContext<'a> {
+        RenderContext { shadow_tests, ..self }
     }
 
     /// The same with so many samples of a pixel.
-    pub fn with_pixel_samples(self, pixel_samples: u32) -> Job<'a> {
-        Job { pixel_samples, ..self }
+    pub fn with_pixel_samples(self, pixel_samples: u32) -> RenderContext<'a> {
+        RenderContext { pixel_samples, ..self }
     }
 
     /// The same with rows of samples that images share.
-    pub(crate) fn with_rows(self, rows: &Arc<KnownRows>) -> Job<'a> {
-        Job { rows: Arc::clone(rows), ..self }
+    pub(crate) fn with_rows(self, rows: &Arc<KnownRows>) -> RenderContext<'a> {
+        RenderContext { rows: Arc::clone(rows), ..self }
     }
 
     /// Does a piece of the current stage's work, and reports that `pieces` more are done. Does nothing if the observer has requested

@@ -11,17 +11,17 @@ use super::region::{Boxes, Region};
 const LANES: usize = 8;
 
 /// Maximum number of triangles that are handed over at once.
-pub const PIECE: usize = 32;
+pub const CHUNK: usize = 32;
 
-/// Takes pieces of what a search finds, in no order; `false` ends the search.
-pub type Take<'a> = &'a mut dyn FnMut(&[u32]) -> bool;
+/// Takes chunks of what a search finds, in no order; `false` ends the search.
+pub type ChunkSink<'a> = &'a mut dyn FnMut(&[u32]) -> bool;
 
 /// Accepts triangles, and hands over those whose bounding boxes a region may meet.
-pub(super) struct Sieve<'a, S: Simd> {
+pub(super) struct RegionFilter<'a, S: Simd> {
     simd: S,
     region: &'a Region,
-    take: Take<'a>,
-    found: [u32; PIECE],
+    take: ChunkSink<'a>,
+    found: [u32; CHUNK],
     count: usize,
     /// How many wait until there are eight.
     waiting: usize,
@@ -31,12 +31,12 @@ pub(super) struct Sieve<'a, S: Simd> {
     indices: [u32; LANES],
 }
 
-impl<'a, S: Simd> Sieve<'a, S> {
+impl<'a, S: Simd> RegionFilter<'a, S> {
     #[inline(always)]
-    pub(super) fn new(simd: S, region: &'a Region, take: Take<'a>) -> Sieve<'a, S> {
+    pub(super) fn new(simd: S, region: &'a Region, take: ChunkSink<'a>) -> RegionFilter<'a, S> {
         let (low, high) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
         let (loose, indices) = ([0.0; LANES], [0; LANES]);
-        Sieve { simd, region, take, found: [0; PIECE], count: 0, waiting: 0, low, high, loose, indices }
+        RegionFilter { simd, region, take, found: [0; CHUNK], count: 0, waiting: 0, low, high, loose, indices }
     }
 
     /// False ends the search.
@@ -56,7 +56,7 @@ impl<'a, S: Simd> Sieve<'a, S> {
             return true;
         }
         self.ask();
-        self.count <= PIECE - LANES || self.hand_over()
+        self.count <= CHUNK - LANES || self.hand_over()
     }
 
     #[inline(always)]

@@ -16,7 +16,7 @@ const DIRECTION_RANGE: std::ops::RangeInclusive<f32> = 1.0 / LARGEST_DIRECTION..
 
 /// The sphere of interest, which contains the triangles of a structure.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Approach {
+pub(super) struct RayClamp {
     center: Vec3,
     /// Half the longest edge of the box around the triangles; never zero.
     radius: f32,
@@ -24,7 +24,7 @@ pub(super) struct Approach {
 
 /// A ray close to the triangles, and how its parameter relates to that of the original ray: `t = start + t' · scale`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct NearRay {
+pub(super) struct ClampedRay {
     pub(super) origin: Vec3,
     pub(super) direction: Vec3,
     pub(super) t_max: f32,
@@ -32,20 +32,20 @@ pub(super) struct NearRay {
     scale: f64,
 }
 
-impl Approach {
+impl RayClamp {
     /// For triangles within `bounds`.
-    pub(super) fn new(bounds: &Bounds) -> Approach {
+    pub(super) fn new(bounds: &Bounds) -> RayClamp {
         if bounds.is_empty() {
-            return Approach { center: Vec3::ZERO, radius: 1.0 };
+            return RayClamp { center: Vec3::ZERO, radius: 1.0 };
         }
         let center = bounds.center();
         // The floor keeps the rounding of the coordinates themselves below the radius.
         let floor = (center.abs().max_element() * f32::EPSILON).max(f32::MIN_POSITIVE);
-        Approach { center, radius: (0.5 * bounds.extent().max_element()).max(floor) }
+        RayClamp { center, radius: (0.5 * bounds.extent().max_element()).max(floor) }
     }
 
-    pub(super) fn around(triangles: &[Triangle]) -> Approach {
-        Approach::new(&bounds(triangles))
+    pub(super) fn around(triangles: &[Triangle]) -> RayClamp {
+        RayClamp::new(&bounds(triangles))
     }
 
     /// Centre and radius.
@@ -68,17 +68,17 @@ impl Approach {
 
     /// The ray to trace; `None` if it cannot hit anything.
     #[inline(always)]
-    pub(super) fn ray(&self, ray: &Ray) -> Option<NearRay> {
+    pub(super) fn ray(&self, ray: &Ray) -> Option<ClampedRay> {
         let Ray { origin, direction, t_max } = *ray;
         if self.is_near(ray) {
-            return Some(NearRay { origin, direction, t_max, start: 0.0, scale: 1.0 });
+            return Some(ClampedRay { origin, direction, t_max, start: 0.0, scale: 1.0 });
         }
         self.far_ray(ray)
     }
 
     #[cold]
     #[inline(never)]
-    fn far_ray(&self, ray: &Ray) -> Option<NearRay> {
+    fn far_ray(&self, ray: &Ray) -> Option<ClampedRay> {
         let (origin, center) = (ray.origin.as_dvec3(), self.center.as_dvec3());
         let largest = f64::from(ray.direction.abs().max_element());
         let usable = ray.origin.is_finite() && ray.direction.is_finite() && largest > 0.0 && ray.t_max > 0.0;
@@ -90,7 +90,7 @@ impl Approach {
         let direction = ray.direction.as_dvec3() * scale;
         let start = self.start(origin - center, direction)?;
         let t_max = (f64::from(ray.t_max) / scale - start) as f32;
-        (t_max > 0.0).then(|| NearRay {
+        (t_max > 0.0).then(|| ClampedRay {
             origin: (origin + start * direction).as_vec3(),
             direction: direction.as_vec3(),
             t_max,
@@ -113,7 +113,7 @@ impl Approach {
     }
 }
 
-impl NearRay {
+impl ClampedRay {
     /// Converts a hit of this ray to a hit of the original ray.
     #[inline(always)]
     pub(super) fn finish(&self, mut hit: Hit) -> Hit {
