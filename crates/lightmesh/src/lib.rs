@@ -26,8 +26,8 @@
 //!
 //! # A tour
 //!
-//! * [`Request`] has a field for each flag of the command line. [`render()`] makes a picture of a file, [`film`] the frames of an animation, a turntable
-//!   or a day, [`sun_hours`] the hours of direct sun on what a picture shows.
+//! * [`Request`] has a field for each flag of the command line. [`render()`] makes a picture of a file, [`film()`] the frames of an animation, a turntable
+//!   or a day, [`sun_hours()`] the hours of direct sun on what a picture shows.
 //! * [`Scene`] is what is rendered: open a file or one of the built-in scenes (`builtin:gazebo`, `builtin:childpark`,
 //!   `builtin:garden`), or put triangles together with [`SceneBuilder`](scene::SceneBuilder).
 //! * [`Settings`] are the parameters: [`Mode`] (the method, hard-shadow ray tracing, or the area-shadow reference), image size,
