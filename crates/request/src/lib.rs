@@ -7,7 +7,7 @@
 //! * [`Request`] has a field for each setting. The [table](FIELDS) of them is what faces are made of: flags, keyword arguments, annotations.
 //! * A [`Plan`] is a request that is checked as far as possible without the scene; [`Order`] names the scene and the files to write.
 //! * A [`Session`] has the scene staged, which means that it has the camera, the lights and the ground that it lacked, and prepared. It renders
-//!   pictures, [films](film) and [sun studies](sun).
+//!   pictures, [films](mod@film) and [sun studies](sun).
 //! * A [`Host`] is the program around: it shows notes and progress, and can end the work.
 //! * Errors name settings; each face [turns](Told) the names into its own [`Words`].
 #![forbid(unsafe_code)]

@@ -81,11 +81,13 @@ impl Hit {
     pub const MISS: Hit = Hit { t: f32::INFINITY, u: 0.0, v: 0.0, triangle: Hit::NONE };
 
     /// Whether a triangle was hit.
+    #[inline]
     pub fn is_some(&self) -> bool {
         self.triangle != Hit::NONE
     }
 
     /// Whether this hit wins over `other`: nearer, or equally near on a triangle of smaller index.
+    #[inline]
     pub fn beats(&self, other: &Hit) -> bool {
         self.t < other.t || (self.t == other.t && self.triangle < other.triangle)
     }

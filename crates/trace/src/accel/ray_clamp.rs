@@ -34,6 +34,7 @@ pub(super) struct ClampedRay {
 
 impl RayClamp {
     /// For triangles within `bounds`.
+    #[inline]
     pub(super) fn new(bounds: &Bounds) -> RayClamp {
         if bounds.is_empty() {
             return RayClamp { center: Vec3::ZERO, radius: 1.0 };
@@ -44,16 +45,19 @@ impl RayClamp {
         RayClamp { center, radius: (0.5 * bounds.extent().max_element()).max(floor) }
     }
 
+    #[inline]
     pub(super) fn around(triangles: &[Triangle]) -> RayClamp {
         RayClamp::new(&bounds(triangles))
     }
 
     /// Centre and radius.
+    #[inline]
     pub(super) fn parts(&self) -> (Vec3, f32) {
         (self.center, self.radius)
     }
 
     /// Half the longest edge of the box around the triangles.
+    #[inline]
     pub(super) fn radius(&self) -> f32 {
         self.radius
     }
@@ -125,11 +129,13 @@ impl ClampedRay {
 }
 
 /// The box around `triangles`.
+#[inline]
 pub(super) fn bounds(triangles: &[Triangle]) -> Bounds {
     Bounds::around(triangles.iter().flat_map(|triangle| triangle.corners()))
 }
 
 /// Whether two closed boxes have a point in common.
+#[inline]
 pub(super) fn overlap(a: &Bounds, b: &Bounds) -> bool {
     a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
 }

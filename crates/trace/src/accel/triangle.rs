@@ -21,6 +21,7 @@ pub struct Triangle {
 
 impl Triangle {
     /// A triangle with its index in the scene's mesh.
+    #[inline]
     pub fn new(corners: [Vec3; 3], index: u32) -> Triangle {
         let mut packed = corners.map(|corner| Vec4::from((corner, 0.0)).to_array());
         packed[0][3] = f32::from_bits(index);
@@ -30,6 +31,7 @@ impl Triangle {
     /// The same triangle, cut out: `number` is that of its opacities, from 1; 0 if it is opaque.
     #[must_use]
     #[doc(hidden)]
+    #[inline]
     pub fn cut_out(mut self, number: u32) -> Triangle {
         self.corners[1][3] = f32::from_bits(number);
         self
@@ -43,6 +45,7 @@ impl Triangle {
     }
 
     /// What a structure holds in place of the triangles of an instance: the box around it.
+    #[inline]
     pub(super) fn holder(bounds: &Bounds, instance: u32) -> Triangle {
         let mut holder = Triangle::new([bounds.min, bounds.max, bounds.min], u32::MAX);
         holder.corners[2][3] = f32::from_bits(instance + 1);
@@ -63,6 +66,7 @@ impl Triangle {
 
     /// Whether the structures accept it: all coordinates finite and within ±[`Triangle::MAX_COORDINATE`], and no two corners equal.
     /// Others are never hit.
+    #[inline]
     pub fn is_usable(&self) -> bool {
         let [a, b, c] = self.corners();
         let in_range = |corner: Vec3| corner.abs().cmple(Vec3::splat(Triangle::MAX_COORDINATE)).all();
@@ -73,6 +77,7 @@ impl Triangle {
     pub const MAX_COORDINATE: f32 = (1u64 << 40) as f32;
 
     /// The box around the corners.
+    #[inline]
     pub fn bounds(&self) -> Bounds {
         Bounds::around(self.corners())
     }

@@ -74,6 +74,7 @@ impl<'a> All<'a> {
     }
 
     /// Hands over the hits of `ray`, each once and in order, if there are any.
+    #[inline]
     pub(super) fn finish(self, ray: &ClampedRay, take: impl FnOnce(&[Hit])) {
         let hits = self.hits;
         if hits.is_empty() {

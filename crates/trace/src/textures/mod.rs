@@ -7,6 +7,7 @@ use lightmesh_scene::{Geometry, Texture, TextureUse};
 pub use neighbours::neighbours;
 
 /// A texture that is used like this, if it can be looked up.
+#[inline]
 pub fn usable(geometry: &Geometry, uses: TextureUse) -> Option<(TextureUse, &Texture)> {
     if geometry.mesh.uvs.is_empty() {
         return None;

@@ -48,45 +48,53 @@ impl Bvh {
 
     /// Its instances.
     #[doc(hidden)]
+    #[inline]
     pub fn instances(&self) -> &Arc<[Instanced]> {
         &self.instances
     }
 
     /// The opacities of triangles that are cut out.
     #[doc(hidden)]
+    #[inline]
     pub fn with_coverage(self, coverage: &Coverage) -> Bvh {
         Bvh { coverage: coverage.clone(), ..self }
     }
 
     /// These opacities.
     #[doc(hidden)]
+    #[inline]
     pub fn coverage(&self) -> &Coverage {
         &self.coverage
     }
 
     /// The nodes, root first.
     #[doc(hidden)]
+    #[inline]
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
     /// The triangles in leaf order.
+    #[inline]
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 
     /// Number of levels, of the scene's tree and those of shapes together.
+    #[inline]
     pub fn depth(&self) -> usize {
         self.depth + self.shape_depth
     }
 
     /// Centre and radius of the sphere of interest.
+    #[inline]
     pub fn ray_clamp(&self) -> (Vec3, f32) {
         self.ray_clamp.parts()
     }
 
     /// The same tree traversed at another SIMD level; every level gives the same bits.
     #[doc(hidden)]
+    #[inline]
     pub fn at_level(mut self, level: Level) -> Bvh {
         self.level = level;
         self

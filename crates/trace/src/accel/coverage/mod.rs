@@ -65,6 +65,7 @@ pub struct Mask {
 
 impl Coverage {
     /// Everything that is cut out, if anything is.
+    #[inline]
     pub fn table(&self) -> Option<&Table> {
         self.table.as_deref()
     }
@@ -84,6 +85,7 @@ impl Coverage {
     }
 
     /// Adds all that decides where surfaces are to a hash.
+    #[inline]
     pub fn add_to_hash(&self, hash: &mut Xxh3) {
         let Some(table) = self.table() else { return };
         hash.update(bytemuck::cast_slice(&table.triangles));
@@ -95,6 +97,7 @@ impl Coverage {
     }
 
     /// Bytes on the heap.
+    #[inline]
     pub fn memory(&self) -> usize {
         self.table().map_or(0, |table| {
             size_of_val(&*table.triangles) + table.planes.iter().map(|plane| plane.len()).sum::<usize>()
@@ -136,6 +139,7 @@ impl Coverage {
     }
 
     /// How opaque `triangle` is where it is hit, from 0 to 1.
+    #[inline]
     pub fn opacity(&self, triangle: &Triangle, hit: &Hit) -> f32 {
         match self.table() {
             Some(table) if triangle.cut() != 0 && table.mask_of(triangle.cut()).blends => {
@@ -189,6 +193,7 @@ impl Mask {
 }
 
 /// From `a` to `b`. Of whole numbers up to 255, and of such means of them, it is no less than the smallest: their differences are exact.
+#[inline]
 pub fn between(a: f32, b: f32, share: f32) -> f32 {
     a + share * (b - a)
 }

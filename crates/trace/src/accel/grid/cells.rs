@@ -32,33 +32,39 @@ pub struct Grid {
 impl Grid {
     /// The opacities of triangles that are cut out.
     #[doc(hidden)]
+    #[inline]
     pub fn with_coverage(self, coverage: &Coverage) -> Grid {
         Grid { coverage: coverage.clone(), ..self }
     }
 
     /// Cells on each axis of the outer grid.
+    #[inline]
     pub fn dims(&self) -> [u32; 3] {
         self.lattice.dims.to_array()
     }
 
     /// How many walks took more steps than a grid of this size allows and tested all triangles instead. Always 0, unless the
     /// bound that `walk` derives is wrong.
+    #[inline]
     pub fn overruns(&self) -> u64 {
         self.overruns.load(Ordering::Relaxed)
     }
 
     /// The flat nested form.
+    #[inline]
     pub fn cells(&self) -> &[i32] {
         &self.cells
     }
 
     /// The triangles of all cells.
+    #[inline]
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 
     /// The triangles that it holds, each once, in the order of the list that it was built from.
     #[doc(hidden)]
+    #[inline]
     pub fn held(&self) -> Vec<Triangle> {
         let mut held: Vec<(u32, &Triangle)> = self.sources.iter().copied().zip(self.triangles.iter()).collect();
         held.sort_unstable_by_key(|(source, _)| *source);
@@ -68,38 +74,45 @@ impl Grid {
 
     /// Number of triangles in all cells: one in several counts for each.
     #[doc(hidden)]
+    #[inline]
     pub fn references(&self) -> usize {
         self.triangles.len()
     }
 
     /// Lowest corner of the outer grid, and edges of its cells.
     #[doc(hidden)]
+    #[inline]
     pub fn geometry(&self) -> (DVec3, Vec3) {
         (self.lattice.origin, self.lattice.size)
     }
 
     /// By how much cells were enlarged when triangles were sorted into them.
+    #[inline]
     pub fn margin(&self) -> f32 {
         self.margin
     }
 
     /// For each of its triangles, where that was among those it was built over.
     #[doc(hidden)]
+    #[inline]
     pub fn sources(&self) -> &[u32] {
         &self.sources
     }
 
     /// Centre and radius of the sphere of interest.
+    #[inline]
     pub fn ray_clamp(&self) -> (Vec3, f32) {
         self.ray_clamp.parts()
     }
 
     /// The lowest corner of a cell of the outer grid.
     #[doc(hidden)]
+    #[inline]
     pub fn corner(&self, cell: [u32; 3]) -> Vec3 {
         self.lattice.corner(cell.into()).as_vec3()
     }
 
+    #[inline]
     pub(super) fn count_overrun(&self) {
         self.overruns.fetch_add(1, Ordering::Relaxed);
     }

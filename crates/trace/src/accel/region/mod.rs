@@ -51,6 +51,7 @@ enum RegionShape {
 
 impl Region {
     /// A closed box.
+    #[inline]
     pub fn within(bounds: Bounds) -> Region {
         Region { shape: RegionShape::Box, planes: TangentPlanes::NONE, bounds }
     }
@@ -59,6 +60,7 @@ impl Region {
     ///
     /// Distances along the axes have a relative error of ε, their squares 3 ε in all, the sum 2 ε more, and the square of `reach` 3 ε
     /// here: 16 ε cover these 8 ε. The smallest normal number covers squares that are subnormal.
+    #[inline]
     pub fn near(origins: Bounds, reach: f32) -> Region {
         let square = reach * reach * (1.0 + REGION_ROUNDING) + f32::MIN_POSITIVE;
         let bounds = Bounds { min: below(origins.min - reach), max: above(origins.max + reach) };
@@ -66,6 +68,7 @@ impl Region {
     }
 
     /// All points of all segments from a point of `origins` to a point of `emitter`.
+    #[inline]
     pub fn shaft(origins: Bounds, emitter: Bounds) -> Region {
         if origins.is_empty() || emitter.is_empty() {
             return Region::within(Bounds::EMPTY);
@@ -75,16 +78,19 @@ impl Region {
     }
 
     /// The part that does not lie below all the planes; everything if there are none.
+    #[inline]
     pub fn above(self, planes: TangentPlanes) -> Region {
         Region { planes: planes.for_boxes_in(&self.bounds), ..self }
     }
 
     /// A box around it.
+    #[inline]
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
     /// The way from the middle of a shaft's first box to that of its second; zero for other forms.
+    #[inline]
     pub(super) fn heading(&self) -> Vec3 {
         match &self.shape {
             RegionShape::Shaft(shaft) => shaft.heading(),
@@ -93,11 +99,13 @@ impl Region {
     }
 
     /// Whether its bounds may be far larger than the region itself, so that parts of it should be bounded [one by one](Self::between).
+    #[inline]
     pub(super) fn is_slanted(&self) -> bool {
         matches!(self.shape, RegionShape::Shaft(_))
     }
 
     /// A box around all of its points whose coordinate on `axis` lies between `low` and `high`; empty if there are none.
+    #[inline]
     pub(super) fn between(&self, axis: usize, low: f32, high: f32) -> Bounds {
         let mut bounds = match &self.shape {
             RegionShape::Shaft(shaft) => shaft.between(axis, low, high),

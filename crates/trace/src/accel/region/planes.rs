@@ -57,21 +57,25 @@ impl TangentPlanes {
     }
 
     /// Where heights are measured from.
+    #[inline]
     pub fn corner(&self) -> Vec3 {
         self.corner
     }
 
     /// The normals and heights.
+    #[inline]
     pub fn each(&self) -> impl Iterator<Item = (Vec3, f32)> + '_ {
         self.normals.into_iter().zip(self.heights).take(self.count)
     }
 
     /// Whether nothing is known.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
     /// The same planes, lowered by the rounding for boxes that overlap `bounds`.
+    #[inline]
     pub(super) fn for_boxes_in(mut self, bounds: &Bounds) -> TangentPlanes {
         let far = (bounds.min - self.corner).abs().max((bounds.max - self.corner).abs());
         for (height, normal) in self.heights[..self.count].iter_mut().zip(&self.normals) {

@@ -51,11 +51,13 @@ pub(super) struct Shaft {
 
 impl Shaft {
     /// Between two boxes that are not empty.
+    #[inline]
     pub(super) fn new(from: &Bounds, to: &Bounds) -> Shaft {
         Shaft { low: Faces::new(from.min, to.min, -1.0), high: Faces::new(from.max, to.max, 1.0) }
     }
 
     /// The way from the middle of the first box to that of the second.
+    #[inline]
     pub(super) fn heading(&self) -> Vec3 {
         0.5 * (self.low.to - self.low.from + self.high.to - self.high.from)
     }
