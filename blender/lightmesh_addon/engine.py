@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from . import passes, settings
-from .notes import Notes
+from .notes import Notes, fault
 
 if TYPE_CHECKING:
     import lightmesh
@@ -59,7 +59,7 @@ class LightmeshEngine(bpy.types.RenderEngine):
             self._fail(str(error))
         except Exception as error:
             # Without an image, Blender goes on only if it knows of an error.
-            self._fail(f"Lightmesh failed ({type(error).__name__}: {error}): please report it with the text in the console")
+            self._fail(fault(error))
             raise
         if len(notes):
             self.report({"WARNING"}, notes.text())
@@ -74,23 +74,14 @@ class LightmeshEngine(bpy.types.RenderEngine):
         from .export.scene import Exporter
 
         scene, view_layer = depsgraph.scene, depsgraph.view_layer
-        render = scene.render
         self.update_stats("", "Lightmesh: reading the scene")
         self._warn_of(scene, view_layer, notes)
 
         # 1. The scene, and what the camera sees of it.
-        looking = self.camera_override or scene.camera
-        if looking is None:
-            raise camera.CameraError("The scene has no camera: add one, and choose it in the scene's properties.")
-        size = camera.full_size(render)
-        aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
-        view = camera.of_object(looking.evaluated_get(depsgraph), depsgraph, size, aspect)
+        view, framing = camera.of_scene(depsgraph, self.camera_override)
         exported = Exporter(depsgraph, notes).run(self._stop_if_asked)
-        crop = camera.border(render, size)
         wanted = passes.wanted(view_layer, exported.light_names)
-        chosen = {**settings.of_scene(scene), **exported.settings, "size": size, "layers": bool(wanted)}
-        if crop:
-            chosen["crop"] = crop
+        chosen = {**settings.of_scene(scene), **exported.settings, **framing, "layers": bool(wanted)}
 
         # 2. The image. What the next frame can use is kept.
         renderer = session.renderer(*settings.device(scene))

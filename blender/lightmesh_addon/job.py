@@ -8,6 +8,8 @@ from typing import Any
 
 import lightmesh
 
+from .notes import fault
+
 
 class Job:
     """Begins at once. `work` gets the job, and returns its result."""
@@ -54,5 +56,5 @@ class Job:
         except (lightmesh.LightmeshError, OSError) as error:
             self.error = str(error)
         except Exception as error:
-            self.error = f"Lightmesh failed ({type(error).__name__}: {error}): please report it with the text in the console"
+            self.error = fault(error)
             raise

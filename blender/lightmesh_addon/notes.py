@@ -26,3 +26,8 @@ class Notes:
         if len(texts) < 2:
             return "".join(texts)
         return f"{len(texts)} warnings:\n" + "\n".join(texts)
+
+
+def fault(error: Exception) -> str:
+    """What is told of an error that is nobody's but the add-on's own."""
+    return f"Lightmesh failed ({type(error).__name__}: {error}): please report it with the text in the console"

@@ -52,19 +52,13 @@ class Day:
 def study(depsgraph: bpy.types.Depsgraph, notes: Notes) -> Study:
     """The study that a scene asks for, of what its camera sees."""
     scene = depsgraph.scene
-    render, sun = scene.render, scene.lightmesh.sun
-    if scene.camera is None:
-        raise camera.CameraError("The scene has no camera: add one, and choose it in the scene's properties.")
-    size = camera.full_size(render)
-    aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
-    view = camera.of_object(scene.camera.evaluated_get(depsgraph), depsgraph, size, aspect)
+    sun = scene.lightmesh.sun
+    view, framing = camera.of_scene(depsgraph)
     exported = Exporter(depsgraph, notes, sky=sky(sun)).run()
     made = exported.scene(view)
     for text in made.warnings:
         notes.add(text)
-    chosen = {**settings.of_scene(scene), **exported.settings, "sun": day(sun), "size": size}
-    if crop := camera.border(render, size):
-        chosen["crop"] = crop
+    chosen = {**settings.of_scene(scene), **exported.settings, **framing, "sun": day(sun)}
     device = settings.device(scene)
     return Study(made, lambda: session.renderer(*device), chosen, replaced(depsgraph))
 

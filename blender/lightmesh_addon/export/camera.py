@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import bpy
 import lightmesh
@@ -11,6 +12,18 @@ import numpy as np
 
 class CameraError(Exception):
     """A camera that cannot be shown."""
+
+
+def of_scene(depsgraph: bpy.types.Depsgraph, override: bpy.types.Object | None = None) -> tuple[lightmesh.Camera, dict[str, Any]]:
+    """The camera that a render looks through, the scene's unless another is given, and the settings `size` and, with a border, `crop`."""
+    render, looking = depsgraph.scene.render, override or depsgraph.scene.camera
+    if looking is None:
+        raise CameraError("The scene has no camera: add one, and choose it in the scene's properties.")
+    size = full_size(render)
+    aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
+    view = of_object(looking.evaluated_get(depsgraph), depsgraph, size, aspect)
+    crop = border(render, size)
+    return view, {"size": size, "crop": crop} if crop else {"size": size}
 
 
 def of_object(

@@ -19,36 +19,16 @@ const TAKERS: [(&str, &str, &str, &[Group]); 4] = [
         "ImageSettings",
         "image",
         "Settings of an image: those of `lightmesh render`. What is left out, or `None`, is as there.",
-        &[Group::Exposure, Group::Image, Group::Layers, Group::Memory],
+        Group::IMAGE,
     ),
     (
         "FilmSettings",
         "film",
         "Settings of a film or a sun study: those of `lightmesh render`. What is left out, or `None`, is as there.",
-        &[
-            Group::Motion,
-            Group::Frames,
-            Group::Exposure,
-            Group::Image,
-            Group::Layers,
-            Group::Storage,
-            Group::Reading,
-            Group::Form,
-            Group::Memory,
-        ],
+        Group::FILM,
     ),
-    (
-        "SaveSettings",
-        "save",
-        "How an image file shows a frame: settings of `lightmesh render`.",
-        &[Group::Storage, Group::Exposure],
-    ),
-    (
-        "OpenSettings",
-        "open",
-        "How a scene file is read: settings of `lightmesh render`.",
-        &[Group::Reading, Group::Form, Group::Memory],
-    ),
+    ("SaveSettings", "save", "How an image file shows a frame: settings of `lightmesh render`.", Group::SAVE),
+    ("OpenSettings", "open", "How a scene file is read: settings of `lightmesh render`.", Group::OPEN),
 ];
 
 const HEADER: &str = "\
@@ -98,17 +78,23 @@ fn main() -> ExitCode {
 
 /// All files with their texts.
 fn files(folder: &Path) -> Vec<(PathBuf, String)> {
+    let of = |group: Group| FIELDS.iter().filter(move |field| field.group == group);
     let mut types = HEADER.to_owned();
-    let mut files = Vec::new();
-    for (name, list, sentence, groups) in TAKERS {
-        let fields = || FIELDS.iter().filter(|field| groups.contains(&field.group));
-        types += &format!("\nclass {name}(TypedDict, total=False):\n    \"\"\"{sentence}\"\"\"\n\n");
+    // No group is in two of what a type is made of: type checkers allow no field twice.
+    for &group in Group::FILM {
         let entry = |field: &Field| {
             format!("    {}: {} | None\n    \"\"\"{}\"\"\"\n", field.name, annotation(field), doc(field))
         };
-        types.extend(fields().map(entry));
+        types += &format!("\nclass _{group:?}(TypedDict, total=False):\n");
+        types.extend(of(group).map(entry));
+    }
+    let mut files = Vec::new();
+    for (name, list, sentence, groups) in TAKERS {
+        let bases = groups.iter().map(|group| format!("_{group:?}, ")).collect::<String>();
+        types += &format!("\nclass {name}({bases}total=False):\n    \"\"\"{sentence}\"\"\"\n");
+        let fields = FIELDS.iter().filter(|field| groups.contains(&field.group));
         let item = |field: &Field| format!("{}: {}\n    {}\n", field.name, annotation(field), doc(field));
-        files.push((folder.join(format!("src/docs/{list}.txt")), fields().map(item).collect()));
+        files.push((folder.join(format!("src/docs/{list}.txt")), fields.map(item).collect()));
     }
     files.push((folder.join("python/lightmesh/_settings.py"), types));
     files

@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use lightmesh::request::files::Files;
 use lightmesh::request::sun::SunHours as Hours;
-use lightmesh::request::{Error, Frames, Order, Plan, Request, RequestError, Session};
-use lightmesh::{RenderError, Renderer, Scene as World};
+use lightmesh::request::table::Group;
+use lightmesh::request::{Error, Frames, Order, Plan, Request, Session};
+use lightmesh::{Observer, RenderError, Renderer};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,8 +17,8 @@ use crate::frame::Frame;
 use crate::objects::take_objects;
 use crate::planes::plane;
 use crate::scene::Scene;
-use crate::settings::{self, FILM};
-use crate::watch::{self, Cancel, Watch, Wishes};
+use crate::settings;
+use crate::watch::{self, Watch, Wishes};
 
 /// What a film is of: a scene, or the file of one.
 pub(crate) enum Source {
@@ -50,7 +51,7 @@ impl Production {
         let arguments = arguments.map(|arguments| arguments.copy()).transpose()?;
         let mut request = Request::default();
         let objects = take_objects(&mut request, arguments.as_ref())?;
-        settings::apply(&mut request, arguments.as_ref(), FILM)?;
+        settings::apply(&mut request, arguments.as_ref(), Group::FILM)?;
         let scene = match &source {
             Source::File(path) => path.clone(),
             Source::Scene(_) if request.resume => {
@@ -73,10 +74,12 @@ impl Production {
         let format = order.format();
         let plan = Plan::new(order)?;
         let mut scene = match source {
-            Source::File(path) => Scene::of(World::open_with(&path, &plan.load_options())?, format),
-            Source::Scene(scene) => *scene,
+            Source::File(_) => Scene::of(plan.open(watch)?, format),
+            Source::Scene(scene) => {
+                plan.files.outputs.keep_scene(&scene.world)?;
+                *scene
+            }
         };
-        plan.files.outputs.keep_scene(&scene.world)?;
         objects(&mut scene);
         Session::begin(engine, plan, scene.world, 0.0, watch)
     }
@@ -87,8 +90,7 @@ impl Production {
 pub(crate) struct Film {
     engine: Arc<Renderer>,
     frames: Mutex<Frames>,
-    progress: Option<Py<PyAny>>,
-    cancel: Option<Cancel>,
+    wishes: Wishes,
 }
 
 impl Film {
@@ -96,20 +98,16 @@ impl Film {
         py: Python<'_>,
         engine: &Arc<Renderer>,
         production: Production,
-        Wishes { progress, cancel }: Wishes,
+        wishes: Wishes,
     ) -> PyResult<Film> {
-        let wishes =
-            Wishes { progress: progress.as_ref().map(|callback| callback.clone_ref(py)), cancel: cancel.clone() };
         let begin = |watch: &Watch| {
-            if watch.is_cancelled() {
+            if watch.cancelled() {
                 return Err(RenderError::Cancelled.into());
             }
-            let session = production.session(engine, watch)?;
-            let range = session.plan().range(session.scene())?.ok_or(RequestError::NoFilm)?;
-            session.frames(range, engine, watch)
+            production.session(engine, watch)?.frames(engine, watch)
         };
-        let frames = watch::run(py, wishes, begin)?.or_raise()?;
-        Ok(Film { engine: Arc::clone(engine), frames: Mutex::new(frames), progress, cancel })
+        let frames = watch::run(py, wishes.clone_ref(py), begin)?.or_raise()?;
+        Ok(Film { engine: Arc::clone(engine), frames: Mutex::new(frames), wishes })
     }
 }
 
@@ -120,15 +118,13 @@ impl Film {
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Frame>> {
-        let progress = self.progress.as_ref().map(|callback| callback.clone_ref(py));
-        let wishes = Wishes { progress, cancel: self.cancel.clone() };
         let next = |watch: &Watch| {
             let mut frames = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
             let rendered = frames.next(&self.engine, watch).transpose()?;
             let request = &frames.plan().order.request;
             Ok::<_, Error>(rendered.map(|rendered| Frame::of_film(rendered, request, watch.notes())))
         };
-        watch::run(py, wishes, next)?.or_raise()
+        watch::run(py, self.wishes.clone_ref(py), next)?.or_raise()
     }
 
     /// How many frames are left.
@@ -154,10 +150,7 @@ impl SunHours {
         production: Production,
         wishes: Wishes,
     ) -> PyResult<SunHours> {
-        let find = |watch: &Watch| {
-            let found = production.session(engine, watch)?.sun_hours(engine, watch)?;
-            found.ok_or(Error::Request(RequestError::Missing { setting: "sun" }))
-        };
+        let find = |watch: &Watch| production.session(engine, watch)?.sun_hours(engine, watch);
         Ok(SunHours { found: watch::run(py, wishes, find)?.or_raise()? })
     }
 }

@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::Vec3;
 use lightmesh::image::{Description, Format, Layers, publish};
 use lightmesh::request::film::RenderedFrame;
+use lightmesh::request::table::Group;
 use lightmesh::request::{Request, StoragePlan, describe};
-use lightmesh::scene;
 use lightmesh::{Frame as Rendered, Scene};
 use lightmesh_files::visible;
 use numpy::{PyArray2, PyArray3};
@@ -17,7 +16,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::errors::OrRaise;
 use crate::mattes::{Mattes, Which};
 use crate::planes::{no_layers, plane, planes};
-use crate::settings::{self, SAVE};
+use crate::settings;
 
 /// A rendered image. Its arrays are views into it that cannot be written; row 0 is the top. Those from `depth` on exist if it was
 /// rendered with `layers=True`.
@@ -45,8 +44,7 @@ pub(crate) fn dict<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyRes
 impl Frame {
     /// A frame of a scene as it was rendered.
     pub(crate) fn new(rendered: Rendered, stops: f32, notes: Vec<String>, world: &Scene) -> Frame {
-        let camera: Option<&scene::Camera> = world.cameras.first();
-        let description = describe(&rendered, world.to_world(Vec3::ZERO), camera);
+        let description = describe(&rendered, world);
         let (storage, rendered) = (Request::default(), Arc::new(rendered));
         Frame { rendered, stops, notes, description, storage, number: None, when: String::new() }
     }
@@ -69,7 +67,7 @@ impl Frame {
 
     fn options(&self, settings: Option<&Bound<'_, PyDict>>) -> PyResult<lightmesh::image::SaveOptions> {
         let mut request = self.storage.clone();
-        settings::apply(&mut request, settings, SAVE)?;
+        settings::apply(&mut request, settings, Group::SAVE)?;
         Ok(StoragePlan::new(&request).options(&self.rendered, self.stops, self.description.clone()))
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use lightmesh::render::PreparedScene as Prepared;
+use lightmesh::request::table::Group;
 use lightmesh::request::{ImagePlan, Request, StageError, StagedImage};
 use lightmesh::scene::{Geometry, Up};
 use lightmesh::{RenderError, Renderer as Engine};
@@ -14,7 +15,7 @@ use crate::errors::{self, IntoException, OrRaise};
 use crate::light::Light;
 use crate::objects::take_objects;
 use crate::scene::Scene;
-use crate::settings::{self, IMAGE};
+use crate::settings;
 use crate::watch::Watch;
 
 /// A scene with its acceleration structure, ready to be rendered any number of times.
@@ -106,7 +107,7 @@ impl Order {
         };
         let settings = settings.map(|settings| settings.copy()).transpose()?;
         take_objects(&mut request, settings.as_ref())?(&mut scene);
-        settings::apply(&mut request, settings.as_ref(), IMAGE)?;
+        settings::apply(&mut request, settings.as_ref(), Group::IMAGE)?;
         let plan = ImagePlan::new(&request, scene.format).or_raise()?;
         Ok(Order { scene, request, plan, kept })
     }

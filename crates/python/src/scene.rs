@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use lightmesh::Scene as World;
+use lightmesh::request::table::Group;
 use lightmesh::request::{format_of, load_options};
 use lightmesh::scene::{self, Instancing, Lights, SceneFormat, Surroundings};
 use lightmesh_files::visible;
@@ -18,7 +19,7 @@ use crate::errors::{self, OrRaise};
 use crate::frame;
 use crate::geometry::{self, Geometry};
 use crate::light::Light;
-use crate::settings::{self, OPEN};
+use crate::settings;
 
 /// What built-in scenes are called on the command line.
 const BUILTIN: &str = "builtin:";
@@ -120,7 +121,7 @@ impl Scene {
     #[staticmethod]
     #[pyo3(signature = (path, **settings))]
     fn open(py: Python<'_>, path: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Scene> {
-        let request = settings::of(settings, OPEN)?;
+        let request = settings::of(settings, Group::OPEN)?;
         let options = load_options(&request, request.smooth.unwrap_or_default().0, request.instances);
         let world = py.detach(|| World::open_with(&path, &options)).or_raise()?;
         let scene = Scene::of(world, format_of(&path, request.scene_format));

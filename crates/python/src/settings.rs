@@ -8,25 +8,6 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
 
 use crate::errors::OrRaise;
 
-/// Settings of reading a scene.
-pub(crate) const OPEN: &[Group] = &[Group::Reading, Group::Form, Group::Memory];
-/// Settings of an image.
-pub(crate) const IMAGE: &[Group] = &[Group::Image, Group::Exposure, Group::Layers, Group::Memory];
-/// Settings of a film.
-pub(crate) const FILM: &[Group] = &[
-    Group::Motion,
-    Group::Frames,
-    Group::Image,
-    Group::Exposure,
-    Group::Storage,
-    Group::Layers,
-    Group::Memory,
-    Group::Reading,
-    Group::Form,
-];
-/// Settings of an image file.
-pub(crate) const SAVE: &[Group] = &[Group::Storage, Group::Exposure];
-
 /// Sets what keyword arguments say, of these groups of settings.
 pub(crate) fn apply(request: &mut Request, arguments: Option<&Bound<'_, PyDict>>, groups: &[Group]) -> PyResult<()> {
     for (name, argument) in arguments.into_iter().flatten() {

@@ -78,6 +78,13 @@ pub(crate) struct Wishes {
     pub(crate) cancel: Option<Cancel>,
 }
 
+impl Wishes {
+    /// The same again.
+    pub(crate) fn clone_ref(&self, py: Python<'_>) -> Wishes {
+        Wishes { progress: self.progress.as_ref().map(|callback| callback.clone_ref(py)), cancel: self.cancel.clone() }
+    }
+}
+
 /// What the work tells.
 pub(crate) struct Watch {
     state: Mutex<State>,
@@ -102,11 +109,6 @@ impl Watch {
 
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Whether the work is to end.
-    pub(crate) fn is_cancelled(&self) -> bool {
-        self.cancelled()
     }
 
     /// What was said to people.

@@ -11,9 +11,9 @@ use crate::plan::Plan;
 
 /// A scene that is staged and prepared as planned.
 #[derive(Clone)]
-pub(crate) struct Ready {
+pub(crate) struct Prepared {
     pub(crate) plan: Arc<Plan>,
-    pub(crate) prepared: PreparedScene,
+    pub(crate) scene: PreparedScene,
     pub(crate) metering: Metering,
 }
 

@@ -9,6 +9,7 @@ use crate::expose::Metering;
 use crate::files::save_options;
 use crate::host::Host;
 use crate::request::Request;
+use crate::save::stored;
 use crate::settings::settings;
 use crate::stage::Staging;
 use crate::value::Exposure;
@@ -29,7 +30,7 @@ impl ImagePlan {
     /// [`RequestError`].
     pub fn new(request: &Request, format: Option<SceneFormat>) -> Result<ImagePlan, RequestError> {
         request.check()?;
-        let settings = settings(request, format)?.with_layers(request.layers);
+        let settings = settings(request, format)?;
         let is_linear = request.format == Some(Format::Exr);
         Ok(ImagePlan { settings, staging: Staging::new(request, format)?, exposure: request.exposure, is_linear })
     }
@@ -102,8 +103,6 @@ impl StoragePlan {
             Some(Exposure::Stops(stops)) => stops,
             Some(Exposure::Auto) => frame.image.auto_exposure(),
         };
-        let mut options = self.options.clone().with_description(description);
-        options.display.exposure = stops;
-        options
+        stored(self.options.clone(), stops, description)
     }
 }

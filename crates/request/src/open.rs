@@ -4,19 +4,18 @@ use std::ops::Deref;
 use std::path::Path;
 use std::time::Instant;
 
-use glam::Vec3;
 use lightmesh_image::{SaveError, SaveOptions, publish};
 use lightmesh_render::{Choice, Frame, Renderer, Unobserved};
 use lightmesh_scene::Scene;
 
-use crate::error::{Error, RequestError};
+use crate::error::Error;
 use crate::files::{Files, save_options};
 use crate::film::RenderedFrame;
 use crate::host::Host;
 use crate::order::Order;
 use crate::plan::Plan;
 use crate::request::Request;
-use crate::save::describe;
+use crate::save::{describe, stored};
 use crate::session::{Frames, Session};
 use crate::sun::SunHours;
 
@@ -29,9 +28,7 @@ pub struct Picture {
 
 impl Picture {
     fn new(frame: Frame, stops: f32, scene: &Scene, request: &Request) -> Picture {
-        let description = describe(&frame, scene.to_world(Vec3::ZERO), scene.cameras.first());
-        let mut options = save_options(request).with_description(description);
-        options.display.exposure = stops;
+        let options = stored(save_options(request), stops, describe(&frame, scene));
         Picture { frame, stops, options }
     }
 
@@ -93,8 +90,7 @@ pub fn film<'a>(
     host: &'a dyn Host,
 ) -> Result<FilmFrames<'a>, Error> {
     let opened = Opened::new(path.as_ref(), request, files, host)?;
-    let range = opened.session.plan().range(opened.session.scene())?.ok_or(RequestError::NoFilm)?;
-    let frames = opened.session.frames(range, &opened.renderer, host)?;
+    let frames = opened.session.frames(&opened.renderer, host)?;
     Ok(FilmFrames { renderer: opened.renderer, frames, host })
 }
 
@@ -104,8 +100,7 @@ pub fn film<'a>(
 /// [`Error`].
 pub fn sun_hours(path: impl AsRef<Path>, request: &Request) -> Result<SunHours, Error> {
     let opened = Opened::new(path.as_ref(), request, Files::default(), &Unobserved)?;
-    let found = opened.session.sun_hours(&opened.renderer, &Unobserved)?;
-    found.ok_or(Error::Request(RequestError::Missing { setting: "sun" }))
+    opened.session.sun_hours(&opened.renderer, &Unobserved)
 }
 
 /// A session with its renderer.
@@ -119,10 +114,7 @@ impl Opened {
         let plan = Plan::new(Order { scene: path.to_owned(), request: request.clone(), files })?;
         let renderer = Renderer::on(Choice::of(request.device)?, plan.threads.map(usize::from))?;
         let start = Instant::now();
-        let options = plan.load_options();
-        let scene = host.during(&format!("reading {}", path.display()), || Scene::open_with(path, &options))?;
-        plan.files.outputs.keep_scene(&scene)?;
-        scene.warnings.iter().for_each(|warning| host.warning(warning));
+        let scene = plan.open(host)?;
         let session = Session::begin(&renderer, plan, scene, start.elapsed().as_secs_f64(), host)?;
         Ok(Opened { renderer, session })
     }

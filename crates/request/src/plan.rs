@@ -58,7 +58,8 @@ impl Plan {
         let request = &order.request;
         request.check()?;
         let format = order.format();
-        let settings = settings(request, format)?.with_layers(request.layers || order.files.layers.is_some());
+        let mut settings = settings(request, format)?;
+        settings.layers |= order.files.layers.is_some();
         let sun = SunStudy::new(&order)?;
         let film = Film::new(&order, sun.as_ref())?;
         let files = match (&film, &sun) {

@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, Vec3};
 use lightmesh_files::Ready;
 use lightmesh_image::{Description, Format, Frame as Image, SaveError, SaveOptions};
 use lightmesh_render::Frame;
-use lightmesh_scene::{Camera, Scene};
+use lightmesh_scene::Scene;
 
 use crate::clipping;
 use crate::context::Context;
@@ -38,9 +38,7 @@ pub(crate) fn save(
         let warnings = clipping::warnings(frame, &display, metering.has_ground(), host.words());
         warnings.iter().for_each(|(what, text)| host.warning_about(what, text));
     }
-    let description = describe(frame, scene.to_world(Vec3::ZERO), scene.cameras.first());
-    let mut options = files.options.clone().with_description(description);
-    options.display.exposure = stops;
+    let options = stored(files.options.clone(), stops, describe(frame, scene));
     host.during("writing the image", || write(frame, scene, files, &options, context))
 }
 
@@ -76,8 +74,14 @@ fn encode(image: &Image, files: &PictureFiles, options: &SaveOptions) -> Result<
 /// Settings that say nothing about an image: the machine, and ways to the same result.
 const MACHINE: [&str; 6] = ["device", "threads", "memory_limit", "rows_per_band", "accel", "short_tests"];
 
-/// What exr files say about an image of a scene whose local frame lies at `origin`.
-pub fn describe(frame: &Frame, origin: DVec3, camera: Option<&Camera>) -> Description {
+/// The options of a file that shows an image at `stops`, and says how it was made.
+pub(crate) fn stored(mut options: SaveOptions, stops: f32, description: Description) -> SaveOptions {
+    options.display.exposure = stops;
+    options.with_description(description)
+}
+
+/// What exr files say about an image of a scene, which its first camera sees.
+pub fn describe(frame: &Frame, scene: &Scene) -> Description {
     let mut settings = serde_json::json!(frame.stats.settings);
     // The bytes of an image do not depend on the machine.
     if let Some(settings) = settings.as_object_mut() {
@@ -87,7 +91,9 @@ pub fn describe(frame: &Frame, origin: DVec3, camera: Option<&Camera>) -> Descri
         .with_software(concat!("Lightmesh ", env!("CARGO_PKG_VERSION")))
         .with_scene(&*frame.stats.scene.name)
         .with_settings(settings.to_string());
-    let Some(camera) = camera else { return description };
+    let Some(camera) = scene.cameras.first() else { return description };
+    // Where the scene's local frame lies.
+    let origin = scene.to_world(Vec3::ZERO);
     let [width, height] = frame.stats.settings.size.map(f64::from);
     // Columns of a matrix for column vectors are rows of one for row vectors.
     let rows = |matrix: DMat4| matrix.as_mat4().to_cols_array();

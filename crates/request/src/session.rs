@@ -6,7 +6,7 @@ use lightmesh_image::Format;
 use lightmesh_render::{Frame, PreparedScene, Renderer, Settings};
 use lightmesh_scene::Scene;
 
-use crate::context::{Context, Ready};
+use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::film::{self, FrameRange, FrameRenderer, FrameWriter, RenderedFrame};
@@ -18,11 +18,24 @@ use crate::sun::{self, SunHours};
 
 /// A scene that is staged and prepared as planned.
 pub struct Session {
-    ready: Ready,
+    prepared: Prepared,
     load: f64,
 }
 
 impl Plan {
+    /// Reads the scene's file, which outputs must not overwrite, and tells its warnings.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn open(&self, host: &dyn Host) -> Result<Scene, Error> {
+        let path = &self.order.scene;
+        let scene =
+            host.during(&format!("reading {}", path.display()), || Scene::open_with(path, &self.load_options()))?;
+        self.files.outputs.keep_scene(&scene)?;
+        scene.warnings.iter().for_each(|warning| host.warning(warning));
+        Ok(scene)
+    }
+
     /// The frames to render, if it is a film: checks that it has those that are wanted, and that nothing is replaced unasked.
     ///
     /// # Errors
@@ -53,21 +66,21 @@ impl Session {
         let metering = Metering::of_staged(&mut scene, &staged, plan.files.exposure, is_linear, transparent);
         let prepared = host.during(BUILDING, || renderer.prepare(&scene, &plan.settings, host))?;
         film::explain(&scene, plan.film.is_some(), host);
-        Ok(Session { ready: Ready { plan: Arc::new(plan), prepared, metering }, load })
+        Ok(Session { prepared: Prepared { plan: Arc::new(plan), scene: prepared, metering }, load })
     }
 
     fn context<'a>(&'a self, renderer: &'a Renderer, host: &'a dyn Host) -> Context<'a> {
-        Context { renderer, plan: &self.ready.plan, load: self.load, host }
+        Context { renderer, plan: &self.prepared.plan, load: self.load, host }
     }
 
     /// The plan.
     pub fn plan(&self) -> &Plan {
-        &self.ready.plan
+        &self.prepared.plan
     }
 
     /// The scene as it is rendered.
     pub fn scene(&self) -> &Scene {
-        &self.ready.prepared.scene
+        &self.prepared.scene.scene
     }
 
     /// Writes the hours of direct sun, if they are asked for; returns what was done.
@@ -75,8 +88,8 @@ impl Session {
     /// # Errors
     /// [`Error`].
     pub fn write_sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<Option<String>, Error> {
-        match &self.ready.plan.sun {
-            Some(study) => sun::write_hours(study, &self.ready.prepared, self.context(renderer, host)),
+        match &self.prepared.plan.sun {
+            Some(study) => sun::write_hours(study, &self.prepared.scene, self.context(renderer, host)),
             None => Ok(None),
         }
     }
@@ -88,9 +101,9 @@ impl Session {
     pub fn picture(&self, renderer: &Renderer, host: &dyn Host) -> Result<(Frame, f32), Error> {
         let render = |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, host);
         self.context(renderer, host).picture(
-            &self.ready.prepared,
-            &self.ready.plan.settings,
-            &self.ready.metering,
+            &self.prepared.scene,
+            &self.prepared.plan.settings,
+            &self.prepared.metering,
             render,
         )
     }
@@ -100,7 +113,7 @@ impl Session {
     /// # Errors
     /// [`Error`].
     pub fn write_picture(self, renderer: &Renderer, host: &dyn Host) -> Result<Frame, Error> {
-        let Session { ready: Ready { plan, prepared, metering }, load } = self;
+        let Session { prepared: Prepared { plan, scene: prepared, metering }, load } = self;
         let context = Context { renderer, plan: &plan, load, host };
         let mut mesh = Mesh::open(&plan, (renderer, &prepared), false, host)?;
         let has_file = mesh.has_file();
@@ -124,28 +137,28 @@ impl Session {
     /// # Errors
     /// [`Error`]; frames that are finished stay.
     pub fn write_film(&self, range: FrameRange, renderer: &Renderer, host: &dyn Host) -> Result<String, Error> {
-        film::write(&self.ready, range, self.context(renderer, host))
+        film::write(&self.prepared, range, self.context(renderer, host))
     }
 
-    /// The frames of a film in `range`, which are rendered one by one, and written if the plan has files. Exposure and step are chosen for the whole
-    /// film first.
+    /// The frames of a film, which are rendered one by one, and written if the plan has files. Exposure and step are chosen for the whole film first.
     ///
     /// # Errors
-    /// [`Error`].
-    pub fn frames(&self, mut range: FrameRange, renderer: &Renderer, host: &dyn Host) -> Result<Frames, Error> {
+    /// [`Error`]; [`RequestError::NoFilm`] if nothing moves.
+    pub fn frames(&self, renderer: &Renderer, host: &dyn Host) -> Result<Frames, Error> {
+        let mut range = self.plan().range(self.scene())?.ok_or(RequestError::NoFilm)?;
         let context = self.context(renderer, host);
-        let (frames, writer) = if self.ready.plan.order.files.output.is_some() {
-            let (frames, writer) = film::begin(&self.ready, &mut range, context)?;
+        let (frames, writer) = if self.prepared.plan.order.files.output.is_some() {
+            let (frames, writer) = film::begin(&self.prepared, &mut range, context)?;
             (frames, Some(writer))
         } else {
-            let mut frames = FrameRenderer::new(&self.ready, &range, context)?;
+            let mut frames = FrameRenderer::new(&self.prepared, &range, context)?;
             if !range.numbers.is_empty() {
                 frames.keep(host.cancellable(|| frames.chosen_across(context))?);
             }
             (frames, None)
         };
         Ok(Frames {
-            plan: Arc::clone(&self.ready.plan),
+            plan: Arc::clone(&self.prepared.plan),
             frames,
             writer,
             load: self.load,
@@ -153,13 +166,13 @@ impl Session {
         })
     }
 
-    /// The hours of direct sun on what the picture shows, if a sun study is asked for.
+    /// The hours of direct sun on what the picture shows.
     ///
     /// # Errors
-    /// [`Error`].
-    pub fn sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<Option<SunHours>, Error> {
-        let context = self.context(renderer, host);
-        self.ready.plan.sun.as_ref().map(|study| SunHours::of_study(study, &self.ready.prepared, context)).transpose()
+    /// [`Error`]; [`RequestError::Missing`] if no sun study is asked for.
+    pub fn sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<SunHours, Error> {
+        let study = self.plan().sun.as_ref().ok_or(RequestError::Missing { setting: "sun" })?;
+        SunHours::of_study(study, &self.prepared.scene, self.context(renderer, host))
     }
 }
 

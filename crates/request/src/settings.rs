@@ -24,6 +24,7 @@ pub(crate) fn settings(request: &Request, format: Option<SceneFormat>) -> Result
         .with_short_tests(request.short_tests)
         .with_acceleration(acceleration(request)?)
         .with_seed(request.seed)
+        .with_layers(request.layers)
         .with_partial(request.partial)
         .with_transparent(request.background == Some(Background::Transparent));
     // What is not given leaves its setting open.

@@ -35,6 +35,27 @@ pub enum Group {
     Machine,
 }
 
+impl Group {
+    /// Of reading a scene.
+    pub const OPEN: &[Group] = &[Group::Reading, Group::Form, Group::Memory];
+    /// Of an image of a scene that is in memory.
+    pub const IMAGE: &[Group] = &[Group::Exposure, Group::Image, Group::Layers, Group::Memory];
+    /// Of a film or a sun study of a file.
+    pub const FILM: &[Group] = &[
+        Group::Motion,
+        Group::Frames,
+        Group::Exposure,
+        Group::Image,
+        Group::Layers,
+        Group::Storage,
+        Group::Reading,
+        Group::Form,
+        Group::Memory,
+    ];
+    /// Of an image file.
+    pub const SAVE: &[Group] = &[Group::Storage, Group::Exposure];
+}
+
 /// How a setting is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {

@@ -169,7 +169,7 @@ pub(crate) struct InfoArgs {
     pub(crate) smooth: Smooth,
 
     /// Store meshes in many places once
-    #[arg(long, value_name = "WHEN", value_parser = words::instances(), default_value_t = Instancing::Auto, help_heading = "Reading")]
+    #[arg(long, value_name = "WHEN", value_parser = settings::instances(), default_value_t = Instancing::Auto, help_heading = "Reading")]
     pub(crate) instances: Instancing,
 
     /// List devices, and why some cannot be used

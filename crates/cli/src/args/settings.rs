@@ -5,8 +5,9 @@ use std::marker::PhantomData;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
 use lightmesh::request::files::Files;
-use lightmesh::request::table::{Group, Kind, Minus};
+use lightmesh::request::table::{Choice, Group, Kind, Minus};
 use lightmesh::request::{FIELDS, Field, Name, Request, Words, field};
+use lightmesh::scene::Instancing;
 
 /// Settings of some groups.
 pub(crate) trait Groups {
@@ -104,9 +105,8 @@ fn flag(field: &'static Field) -> Arg {
     let help = Words::Flags.spell(field.doc.trim(), known);
     let mut arg = Arg::new(field.name).long(long).help(help).help_heading(field.heading);
     arg = arg.conflicts_with_all(field.conflicts);
-    arg = field.requires.map_or(arg.clone(), |needed| arg.requires(needed));
-    if field.group == Group::Frames {
-        arg = arg.requires("output");
+    for needed in field.requires.into_iter().chain((field.group == Group::Frames).then_some("output")) {
+        arg = arg.requires(needed);
     }
     if field.kind == Kind::Switch {
         return arg.action(ArgAction::SetTrue);
@@ -119,30 +119,39 @@ fn flag(field: &'static Field) -> Arg {
         Minus::Number => arg.allow_negative_numbers(true),
         Minus::Text => arg.allow_hyphen_values(true),
     };
-    arg = field.default().map_or(arg.clone(), |default| arg.default_value(default));
+    if let Some(default) = field.default() {
+        arg = arg.default_value(default);
+    }
     let action = if field.kind == Kind::List { ArgAction::Append } else { ArgAction::Set };
     arg.action(action).value_parser(parser(field))
 }
 
 /// Checks the texts of a setting, and lists those that can be chosen.
 fn parser(field: &'static Field) -> ValueParser {
-    let choices = (field.choices)();
     if let Some(range) = &field.range {
         let range = i64::from(*range.start())..=i64::from(*range.end());
         return value_parser!(u32).range(range).map(|number| number.to_string()).into();
     }
-    if choices.is_empty() {
-        return ValueParser::new(|text: &str| field.check(text).map(|()| text.to_owned()));
+    match (field.choices)() {
+        choices if choices.is_empty() => ValueParser::new(|text: &str| field.check(text).map(|()| text.to_owned())),
+        choices => chosen_from(choices).into(),
     }
-    let values = choices.into_iter().map(|choice| {
-        let value = PossibleValue::new(choice.name);
-        if choice.help.is_empty() {
-            value
-        } else {
-            value.help(Words::Flags.spell(choice.help.trim_end_matches('.'), known))
-        }
-    });
-    PossibleValuesParser::new(values).into()
+}
+
+/// Takes one of some words.
+fn chosen_from(choices: Vec<Choice>) -> PossibleValuesParser {
+    let help = |choice: &Choice| Words::Flags.spell(choice.help.trim_end_matches('.'), known);
+    let value = |choice: Choice| match choice.help {
+        "" => PossibleValue::new(choice.name),
+        _ => PossibleValue::new(choice.name).help(help(&choice)),
+    };
+    PossibleValuesParser::new(choices.into_iter().map(value))
+}
+
+/// The words of the setting `instances`, for a command that has no request.
+pub(super) fn instances() -> impl TypedValueParser<Value = Instancing> {
+    let choices = field("instances").map(|field| (field.choices)());
+    chosen_from(choices.unwrap_or_default()).try_map(|name| name.parse::<Instancing>())
 }
 
 #[cfg(test)]

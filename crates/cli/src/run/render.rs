@@ -53,7 +53,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 /// Renders the picture and writes its files.
 fn picture(session: Session, args: &RenderArgs, renderer: &Renderer, watcher: &Watcher) -> Result<(), Failure> {
     let is_partial = session.plan().settings.partial;
-    let picture = session.plan().files.picture.as_ref().map_or_else(String::new, ToString::to_string);
+    let picture = session.plan().files.picture_name();
     let write = || session.write_picture(renderer, watcher).map_err(Failure::from);
     let frame = if is_partial { interrupt::keeping(write) } else { write() }?;
     if interrupt::requested() {

@@ -92,7 +92,17 @@ impl PictureFiles {
 
     /// The format of the image.
     pub fn format(&self) -> Option<Format> {
-        self.options.format_of(self.picture.as_ref().and_then(Destination::file).unwrap_or(Path::new("")))
+        self.options.format_of(self.picture_file().unwrap_or(Path::new("")))
+    }
+
+    /// The file of the image, if it goes to one.
+    pub(crate) fn picture_file(&self) -> Option<&Path> {
+        self.picture.as_ref().and_then(Destination::file)
+    }
+
+    /// Where the image goes, for messages.
+    pub fn picture_name(&self) -> String {
+        self.picture.as_ref().map_or_else(String::new, ToString::to_string)
     }
 }
 

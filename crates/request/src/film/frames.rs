@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use lightmesh_render::{Crop, Frame, PreparedScene, RenderError, Settings, Step};
+use lightmesh_render::{Crop, Frame, PreparedScene, Settings, Step};
 use lightmesh_scene::{Animation, Camera, Scene};
 
 use super::{FrameRange, Motion};
-use crate::context::{Context, Ready};
+use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::host::{BUILDING, Host, Quiet};
@@ -51,14 +51,14 @@ pub struct FrameRenderer {
 }
 
 impl FrameRenderer {
-    /// For the film of a ready.
-    pub(crate) fn new(ready: &Ready, range: &FrameRange, context: Context) -> Result<FrameRenderer, Error> {
-        let plan = Arc::clone(&ready.plan);
+    /// For the film that is planned.
+    pub(crate) fn new(prepared: &Prepared, range: &FrameRange, context: Context) -> Result<FrameRenderer, Error> {
+        let plan = Arc::clone(&prepared.plan);
         let motion = plan.film.as_ref().ok_or(RequestError::NoFilm)?.motion;
-        let base = ready.prepared.clone();
+        let base = prepared.scene.clone();
         let moves = matches!(motion, Motion::Scene(_)) && base.scene.animation().is_some_and(Animation::moves_surfaces);
         let mesh = Mesh::open(&plan, (context.renderer, &base), moves, context.host)?;
-        let (settings, metering) = (plan.settings.clone(), ready.metering.clone());
+        let (settings, metering) = (plan.settings.clone(), prepared.metering.clone());
         Ok(FrameRenderer { plan, motion, last: range.last, before: base.clone(), base, settings, metering, mesh })
     }
 
@@ -153,11 +153,6 @@ impl FrameRenderer {
         if let Some(exposure) = exposure {
             self.metering = self.metering.clone().fixed(exposure);
         }
-    }
-
-    /// Ends with an error if the work is to end.
-    pub(super) fn check_cancelled(host: &dyn Host) -> Result<(), Error> {
-        if host.cancelled() { Err(RenderError::Cancelled.into()) } else { Ok(()) }
     }
 }
 

@@ -6,7 +6,7 @@ use lightmesh_scene::Scene;
 
 use super::Container;
 use crate::error::RequestError;
-use crate::files::{Destination, PictureFiles};
+use crate::files::PictureFiles;
 use crate::manifest::{self, Record};
 use crate::order::Order;
 use crate::sun::SunStudy;
@@ -113,7 +113,7 @@ impl Film {
         let (mut numbers, mut existing) = (Vec::new(), VecDeque::new());
         for number in frames.numbers() {
             let files = PictureFiles::of_frame(order, number)?;
-            match files.picture.as_ref().and_then(Destination::file).filter(|path| path.exists()) {
+            match files.picture_file().filter(|path| path.exists()) {
                 Some(path) if !replaces => existing.push_back(path.to_owned()),
                 _ => numbers.push(number),
             }

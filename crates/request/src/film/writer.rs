@@ -5,9 +5,11 @@ use std::sync::mpsc::{self, SyncSender};
 use std::thread;
 use std::time::Instant;
 
+use lightmesh_render::RenderError;
+
 use super::movie::Movie;
 use super::{Film, FrameRange, FrameRenderer, RenderedFrame, summary};
-use crate::context::{Context, Ready};
+use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::files::PictureFiles;
@@ -25,24 +27,23 @@ type InFrame = Box<(u32, Error)>;
 
 /// A frame that is rendered.
 struct Finished {
-    index: usize,
     rendered: RenderedFrame,
     files: PictureFiles,
 }
 
 /// Begins a film with files: what is finished is taken out of `range`. Exposure and step hold for all frames.
 pub(crate) fn begin(
-    ready: &Ready,
+    prepared: &Prepared,
     range: &mut FrameRange,
     context: Context,
 ) -> Result<(FrameRenderer, FrameWriter), Error> {
-    let (plan, host) = (Arc::clone(&ready.plan), context.host);
+    let (plan, host) = (Arc::clone(&prepared.plan), context.host);
     let film = plan.film.as_ref().ok_or(RequestError::NoFilm)?;
-    let mut manifest = Manifest::begin(&plan.order, film, &ready.prepared.scene, range, host)?;
+    let mut manifest = Manifest::begin(&plan.order, film, &prepared.scene.scene, range, host)?;
     let display = plan.files.options.display;
     let movie = plan.files.movie.map(|container| Movie::begin(&plan.order, container, display, host)).transpose()?;
     let begin = Instant::now();
-    let mut renderer = FrameRenderer::new(ready, range, context)?;
+    let mut renderer = FrameRenderer::new(prepared, range, context)?;
     // A request to end leaves time to record what is finished.
     host.cancellable(|| -> Result<(), Error> {
         if manifest.chosen().is_none() && !range.numbers.is_empty() {
@@ -57,14 +58,14 @@ pub(crate) fn begin(
 }
 
 /// Renders the frames that are left, and writes their files. Returns what was done.
-pub(crate) fn write(ready: &Ready, mut range: FrameRange, context: Context) -> Result<String, Error> {
-    let start = Instant::now();
-    let (mut renderer, writer) = begin(ready, &mut range, context)?;
+pub(crate) fn write(prepared: &Prepared, mut range: FrameRange, context: Context) -> Result<String, Error> {
+    let (mut renderer, writer) = begin(prepared, &mut range, context)?;
+    let begin = writer.begin;
     context.host.cancellable(|| {
         both(&mut renderer, writer, &range, context)?;
         if range.numbers.is_empty() { Ok(()) } else { renderer.save_mesh(context.host) }
     })?;
-    Ok(summary(&range, start.elapsed(), &ready.prepared.scene.name, context.load))
+    Ok(summary(&range, begin.elapsed(), &prepared.scene.scene.name, context.load))
 }
 
 /// Renders frames on this thread, and writes them on another one.
@@ -99,14 +100,16 @@ fn render_all(
     context: Context,
     queue: &SyncSender<Finished>,
 ) -> Result<(), InFrame> {
-    for (index, &number) in range.numbers.iter().enumerate() {
+    for &number in &range.numbers {
         let in_frame = |cause| Box::new((number, cause));
         let files = files_of(context.plan, number).map_err(in_frame)?;
         let rendered = renderer.render(number, context).map_err(in_frame)?;
-        if queue.send(Finished { index, rendered, files }).is_err() {
+        if queue.send(Finished { rendered, files }).is_err() {
             break;
         }
-        FrameRenderer::check_cancelled(context.host).map_err(in_frame)?;
+        if context.host.cancelled() {
+            return Err(in_frame(RenderError::Cancelled.into()));
+        }
     }
     Ok(())
 }
@@ -139,23 +142,17 @@ impl FrameWriter {
     ) -> Result<RenderedFrame, Error> {
         let files = files_of(&self.plan, number)?;
         let mut rendered = renderer.render(number, context)?;
-        self.put(self.finished, &mut rendered, &files, context)?;
+        self.put(&mut rendered, &files, context)?;
         Ok(rendered)
     }
 
     /// Writes the files of a frame, and records that they are there.
-    fn write(&mut self, Finished { index, mut rendered, files }: Finished, context: Context) -> Result<(), InFrame> {
+    fn write(&mut self, Finished { mut rendered, files }: Finished, context: Context) -> Result<(), InFrame> {
         let number = rendered.number;
-        self.put(index, &mut rendered, &files, context).map_err(|cause| Box::new((number, cause)))
+        self.put(&mut rendered, &files, context).map_err(|cause| Box::new((number, cause)))
     }
 
-    fn put(
-        &mut self,
-        index: usize,
-        rendered: &mut RenderedFrame,
-        files: &PictureFiles,
-        context: Context,
-    ) -> Result<(), Error> {
+    fn put(&mut self, rendered: &mut RenderedFrame, files: &PictureFiles, context: Context) -> Result<(), Error> {
         let RenderedFrame { number, when, scene, frame, stops } = rendered;
         save(frame, *stops, files, scene, &self.metering, context)?;
         if let Some(movie) = &mut self.movie {
@@ -163,7 +160,7 @@ impl FrameWriter {
         }
         self.manifest.finished(*number, files)?;
         self.finished += 1;
-        self.tell(index, (*number, when), frame.stats.seconds.render, files, context);
+        self.tell((*number, when), frame.stats.seconds.render, files, context);
         Ok(())
     }
 
@@ -196,15 +193,8 @@ impl FrameWriter {
         if self.manifest.is_kept() { "resume" } else { "skip_existing" }
     }
 
-    fn tell(
-        &self,
-        index: usize,
-        (number, when): (u32, &str),
-        seconds: f64,
-        files: &PictureFiles,
-        Context { host, .. }: Context,
-    ) {
-        let (count, kept, index) = (self.range.numbers.len(), self.range.skipped, index + 1);
+    fn tell(&self, (number, when): (u32, &str), seconds: f64, files: &PictureFiles, Context { host, .. }: Context) {
+        let (count, kept, index) = (self.range.numbers.len(), self.range.skipped, self.finished);
         if !self.is_movie() {
             let (finished, all, goes_on) = (index + kept, count + kept, host.words().on(self.goes_on()));
             host.remark(format!("{finished} of {all} frames are finished ({goes_on} goes on)"));
@@ -219,7 +209,7 @@ impl FrameWriter {
             seconds,
             left: self.begin.elapsed().mul_f64((count - index) as f64 / index as f64),
             files: files.paths().map(|path| path.display().to_string()).collect(),
-            picture: files.picture.as_ref().map_or_else(String::new, ToString::to_string),
+            picture: files.picture_name(),
         });
     }
 }

@@ -12,7 +12,7 @@ use xxhash_rust::xxh3::Xxh3;
 
 use super::{Chosen, FileRecord, Folder, Record, VERSION, digest, hex, place, read, scene, settings, write};
 use crate::error::{ManifestError, RequestError};
-use crate::files::{Destination, PictureFiles};
+use crate::files::PictureFiles;
 use crate::film::{Film, FrameRange};
 use crate::host::Host;
 use crate::order::Order;
@@ -176,7 +176,7 @@ impl FileRecord {
 
 /// Whether all files of a frame are there as recorded.
 fn is_finished(record: &Record, number: u32, files: &PictureFiles) -> bool {
-    let folder = files.picture.as_ref().and_then(Destination::file).map_or(Path::new("."), directory);
+    let folder = files.picture_file().map_or(Path::new("."), directory);
     let is_recorded = |recorded: &[FileRecord], path: &Path| {
         let name = name_in(folder, path);
         recorded.iter().any(|file| file.file == name && file.is_at(path))

@@ -121,7 +121,7 @@ DEVICE Mirror mirror_at(const MirrorRays &args, unsigned ray, Vec3 mirrored, Mat
 }
 
 // Its ray number `number`; a share of zero if too little of it reaches the pixel.
-DEVICE Drawn mirror_ray(const MirrorRays &args, unsigned ray, const Mirror &mirror, unsigned number) {
+DEVICE Drawn mirror_ray(const MirrorRays &args, const Mirror &mirror, unsigned number) {
     if (!mirror.surface.material->facets)
         return Drawn{normalize(mirrored(mirror.surface)), mirror.mirrored};
     const Vec3 point = pattern_point(mirror.points.pattern, mirror.points.first + number);
@@ -177,7 +177,7 @@ KERNEL(mirror_rays_thin, MirrorRays, BLOCK, 4) {
     Material own;
     const Mirror mirror = mirror_at(args, ray, shares.mirrored, own);
     for (unsigned number = 0; number < mirror.count; ++number)
-        parts += part_of(mirror_ray(args, ray, mirror, number).share, least);
+        parts += part_of(mirror_ray(args, mirror, number).share, least);
     args.thin[ray] = parts;
 }
 
@@ -192,7 +192,7 @@ KERNEL(mirror_rays_count, MirrorRays, BLOCK, 4) {
     Material own;
     const Mirror mirror = mirror_at(args, ray, shares.mirrored, own);
     for (unsigned number = 0; number < mirror.count; ++number)
-        count += goes_on(mirror_ray(args, ray, mirror, number).share);
+        count += goes_on(mirror_ray(args, mirror, number).share);
     unsigned all;
     rays_before(count, all);
     if (threadIdx.x == 0)
@@ -235,7 +235,7 @@ KERNEL(mirror_rays_emit, MirrorRays, BLOCK, 4) {
     const unsigned faded = material.facets ? facets_faded(material.roughness) << FADE_SHIFT : 0;
     const unsigned marked = (sample & ((1u << FADE_SHIFT) - 1)) | faded;
     for (unsigned number = 0; number < mirror.count; ++number) {
-        const Drawn one = mirror_ray(args, ray, mirror, number);
+        const Drawn one = mirror_ray(args, mirror, number);
         const Vec3 share = left_of(one.share);
         if (share == splat(0.0f))
             continue;
