@@ -11,7 +11,7 @@
 
 use std::path::Path;
 use std::sync::atomic::{AtomicU8, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -133,7 +133,10 @@ fn message(Aborted { written, partial, .. }: &Aborted) -> String {
 /// Calls `end` with an exit code for each request, on a thread of its own.
 #[cfg(unix)]
 fn listen(end: impl Fn(u8) + Send + 'static) -> Result<(), Failure> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    // A file that exceeds the limit of the shell is an error of its output, as a full disk is: the signal has no other effect, and programs
+    // that are started do not inherit it, as they would one that is ignored.
+    signal_hook::flag::register(SIGXFSZ, Arc::default())?;
     // One that is ignored stays so: nohup and shells ask for it.
     let signals = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
     let mut signals = signal_hook::iterator::Signals::new(signals)?;

@@ -163,6 +163,11 @@ impl From<DeviceError> for RenderError {
 }
 
 impl RenderError {
+    /// Whether there was not enough memory on the host.
+    pub fn is_of_memory(&self) -> bool {
+        matches!(self, RenderError::Memory { .. } | RenderError::BuildMemory { .. } | RenderError::TextureMemory { .. })
+    }
+
     /// The settings that the message mentions and that may solve the problem; empty if the cause lies elsewhere.
     pub fn settings(&self) -> Vec<Setting> {
         match self {

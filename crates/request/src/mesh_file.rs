@@ -67,15 +67,18 @@ impl Mesh {
         }
     }
 
-    /// Writes what is known after the last image, of which the scene is `prepared`.
-    pub(crate) fn save(&self, prepared: &PreparedScene, host: &dyn Host) -> Result<(), Error> {
-        let Some(path) = &self.file else { return Ok(()) };
-        let saved = host.during(&format!("writing {}", path.display()), || self.cache.save(path, prepared))?;
-        if let Some(SavedMesh { values, records, bytes, .. }) = saved {
-            let (path, what, bytes) = (path.display(), amount(values, records), Bytes(bytes));
-            host.note(&format!("{path}: wrote {what}, {bytes}"));
+    /// Writes what is known after the last image, of which the scene is `prepared`. Images are there by then: a file that cannot be written is
+    /// worth a warning, not the images.
+    pub(crate) fn save(&self, prepared: &PreparedScene, host: &dyn Host) {
+        let Some(path) = &self.file else { return };
+        match host.during(&format!("writing {}", path.display()), || self.cache.save(path, prepared)) {
+            Ok(Some(SavedMesh { values, records, bytes, .. })) => {
+                let (path, what, bytes) = (path.display(), amount(values, records), Bytes(bytes));
+                host.note(&format!("{path}: wrote {what}, {bytes}"));
+            }
+            Ok(None) => {}
+            Err(error) => host.warning(&format!("{error}; what was rendered is complete, later runs start without it")),
         }
-        Ok(())
     }
 }
 

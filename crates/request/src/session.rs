@@ -123,12 +123,13 @@ impl Session {
         };
         let (mut frame, stops) = context.picture(&prepared, &plan.settings, &metering, render)?;
         mesh.check(host);
-        if !host.cancelled() {
-            mesh.save(&prepared, host)?;
-        }
         let scene = prepared.scene.clone();
-        drop((prepared, mesh)); // frees memory for the encoders
+        // What no file needs leaves its memory to the encoders.
+        let kept = has_file.then_some((prepared, mesh));
         save(&mut frame, stops, &plan.files, &scene, &metering, context)?;
+        if let Some((prepared, mesh)) = kept.filter(|_| !host.cancelled()) {
+            mesh.save(&prepared, host);
+        }
         Ok(frame)
     }
 
@@ -191,7 +192,8 @@ impl Frames {
     pub fn next(&mut self, renderer: &Renderer, host: &dyn Host) -> Option<Result<RenderedFrame, Error>> {
         let context = Context { renderer, plan: &self.plan, load: self.load, host };
         let Some(number) = self.left.next() else {
-            let closed = self.writer.take()?.close().and_then(|()| self.frames.save_mesh(host));
+            let closed = self.writer.take()?.close();
+            self.frames.save_mesh(host);
             return closed.err().map(Err);
         };
         let rendered = host.cancellable(|| match &mut self.writer {

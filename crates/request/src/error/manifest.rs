@@ -20,6 +20,11 @@ pub enum ManifestError {
         /// Why.
         reason: String,
     },
+    /// It is not as it was written.
+    Damaged {
+        /// The file.
+        path: PathBuf,
+    },
     /// It cannot be read.
     Read {
         /// The file.
@@ -83,6 +88,11 @@ impl Told for ManifestError {
                 "{} is not a manifest of films ({reason}); choose another folder for {}, or remove it and {}",
                 path.display(),
                 words.of("output"),
+                anew()
+            ),
+            ManifestError::Damaged { path } => format!(
+                "{} is not as it was written: its checksum is another one; restore it, or remove it and {}",
+                path.display(),
                 anew()
             ),
             ManifestError::Read { path, reason } => {

@@ -68,8 +68,8 @@ impl FrameRenderer {
     }
 
     /// Writes what is known of light points and gathered light, if there is a file for it.
-    pub(crate) fn save_mesh(&self, host: &dyn Host) -> Result<(), Error> {
-        self.mesh.save(&self.before, host)
+    pub(crate) fn save_mesh(&self, host: &dyn Host) {
+        self.mesh.save(&self.before, host);
     }
 
     /// Renders a frame.

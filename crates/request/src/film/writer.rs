@@ -1,7 +1,7 @@
 //! A film is written frame by frame, each as soon as it is finished, while the next one is rendered.
 
-use std::sync::Arc;
 use std::sync::mpsc::{self, SyncSender};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Instant;
 
@@ -29,6 +29,43 @@ type InFrame = Box<(u32, Error)>;
 struct Finished {
     rendered: RenderedFrame,
     files: PictureFiles,
+    /// Ends with the frame.
+    _in_memory: InMemory,
+}
+
+/// The frames that are rendered and still in memory.
+#[derive(Clone, Default)]
+struct Pending(Arc<(Mutex<usize>, Condvar)>);
+
+/// One of them.
+struct InMemory(Pending);
+
+impl Pending {
+    fn count(&self) -> MutexGuard<'_, usize> {
+        self.0.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn add(&self) -> InMemory {
+        *self.count() += 1;
+        InMemory(self.clone())
+    }
+
+    /// Waits until all are written, or nobody writes them; whether there were any.
+    fn wait(&self) -> bool {
+        let mut count = self.count();
+        let had_some = *count > 0;
+        while *count > 0 {
+            count = self.0.1.wait(count).unwrap_or_else(PoisonError::into_inner);
+        }
+        had_some
+    }
+}
+
+impl Drop for InMemory {
+    fn drop(&mut self) {
+        *self.0.count() -= 1;
+        self.0.0.1.notify_all();
+    }
 }
 
 /// Begins a film with files: what is finished is taken out of `range`. Exposure and step hold for all frames.
@@ -61,9 +98,12 @@ pub(crate) fn begin(
 pub(crate) fn write(prepared: &Prepared, mut range: FrameRange, context: Context) -> Result<String, Error> {
     let (mut renderer, writer) = begin(prepared, &mut range, context)?;
     let begin = writer.begin;
-    context.host.cancellable(|| {
+    context.host.cancellable(|| -> Result<(), Error> {
         both(&mut renderer, writer, &range, context)?;
-        if range.numbers.is_empty() { Ok(()) } else { renderer.save_mesh(context.host) }
+        if !range.numbers.is_empty() {
+            renderer.save_mesh(context.host);
+        }
+        Ok(())
     })?;
     Ok(summary(&range, begin.elapsed(), &prepared.scene.scene.name, context.load))
 }
@@ -100,11 +140,17 @@ fn render_all(
     context: Context,
     queue: &SyncSender<Finished>,
 ) -> Result<(), InFrame> {
+    let pending = Pending::default();
     for &number in &range.numbers {
         let in_frame = |cause| Box::new((number, cause));
         let files = files_of(context.plan, number).map_err(in_frame)?;
-        let rendered = renderer.render(number, context).map_err(in_frame)?;
-        if queue.send(Finished { rendered, files }).is_err() {
+        let rendered = match renderer.render(number, context) {
+            // Frames that are being written take memory, too: without them it may suffice.
+            Err(error) if error.is_of_memory() && pending.wait() => renderer.render(number, context),
+            rendered => rendered,
+        };
+        let rendered = rendered.map_err(in_frame)?;
+        if queue.send(Finished { rendered, files, _in_memory: pending.add() }).is_err() {
             break;
         }
         if context.host.cancelled() {
@@ -147,9 +193,9 @@ impl FrameWriter {
     }
 
     /// Writes the files of a frame, and records that they are there.
-    fn write(&mut self, Finished { mut rendered, files }: Finished, context: Context) -> Result<(), InFrame> {
-        let number = rendered.number;
-        self.put(&mut rendered, &files, context).map_err(|cause| Box::new((number, cause)))
+    fn write(&mut self, mut frame: Finished, context: Context) -> Result<(), InFrame> {
+        let number = frame.rendered.number;
+        self.put(&mut frame.rendered, &frame.files, context).map_err(|cause| Box::new((number, cause)))
     }
 
     fn put(&mut self, rendered: &mut RenderedFrame, files: &PictureFiles, context: Context) -> Result<(), Error> {
@@ -211,5 +257,25 @@ impl FrameWriter {
             files: files.paths().map(|path| path.display().to_string()).collect(),
             picture: files.picture_name(),
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_in_memory_are_waited_for() {
+        let pending = Pending::default();
+        assert!(!pending.wait(), "there are none");
+        let (queue, waiting) = mpsc::sync_channel(2);
+        for _ in 0..2 {
+            queue.send(pending.add()).unwrap();
+        }
+        let writer = thread::spawn(move || drop(waiting.recv()));
+        assert!(pending.wait(), "one is written, and the other one is dropped with the queue");
+        assert_eq!(*pending.count(), 0);
+        writer.join().unwrap();
+        assert!(!pending.wait());
     }
 }

@@ -1,7 +1,7 @@
 //! `manifest.json` beside the frames of a film: what they are made of, and which are finished, so that `resume` goes on exactly.
 //!
 //! ```text
-//! {"lightmesh_films": 2, "films": {"film.####.png": {
+//! {"lightmesh_films": 3, "xxh3": "5c…", "films": {"film.####.png": {
 //!   "program": "0.1.0", "scene": "9f…", "settings": {"seed": "0", …},
 //!   "chosen": {"exposure": 1.5, "step": 0.02},
 //!   "frames": {"1": [{"file": "film.0001.png", "bytes": 4711, "xxh3": "3a…"}], …}}}}
@@ -12,7 +12,8 @@
 //!    frame are there. A frame that it does not name is rendered again: at worst those that were finished since it was last written.
 //! 3. What is chosen for the film, exposure and step, holds for all frames. It is recorded with the first of them.
 //!
-//! Checksums are of 128 bits, XXH3: they detect damage and edits, not forgery. There is no manifest for a scene on standard input, which
+//! Checksums are of 128 bits, XXH3: they detect damage and edits, not forgery. The first is that of the films as they are recorded, so that no edit
+//! of the file itself makes frames that do not belong together. There is no manifest for a scene on standard input, which
 //! cannot be read again, nor for a movie, which is one file.
 
 mod record;
@@ -36,7 +37,7 @@ pub(crate) use record::Manifest;
 /// The name of the file.
 const NAME: &str = "manifest.json";
 /// The form of the file.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Bytes that are read at once for a checksum.
 const PIECE: usize = 1 << 20;
 
@@ -44,8 +45,16 @@ const PIECE: usize = 1 << 20;
 #[derive(Debug, Serialize, Deserialize)]
 struct Folder {
     lightmesh_films: u32,
+    /// The checksum of `films`.
+    xxh3: String,
     /// By the name of the output.
     films: BTreeMap<String, Record>,
+}
+
+/// The part of the content that tells the form of the rest.
+#[derive(Debug, Deserialize)]
+struct Form {
+    lightmesh_films: u32,
 }
 
 /// What is recorded of a film.
@@ -123,15 +132,36 @@ fn read(path: &Path) -> Result<Option<Folder>, ManifestError> {
         Err(reason) => return Err(ManifestError::Read { path: path.to_owned(), reason }),
     };
     let foreign = |reason| ManifestError::Foreign { path: path.to_owned(), reason };
+    // Of another form, nothing else may be as it is known here.
+    let Form { lightmesh_films: form } = serde_json::from_slice(&bytes).map_err(|error| foreign(error.to_string()))?;
+    if form != VERSION {
+        return Err(foreign(format!("its form is {form}, and {VERSION} is known")));
+    }
     let folder: Folder = serde_json::from_slice(&bytes).map_err(|error| foreign(error.to_string()))?;
-    match folder.lightmesh_films {
-        VERSION => Ok(Some(folder)),
-        other => Err(foreign(format!("its form is {other}, and {VERSION} is known"))),
+    if folder.xxh3 != folder.checksum() {
+        return Err(ManifestError::Damaged { path: path.to_owned() });
+    }
+    Ok(Some(folder))
+}
+
+fn write(path: &Path, mut folder: Folder) -> Result<(), ManifestError> {
+    folder.xxh3 = folder.checksum();
+    Ok(publish_record(Ready::with(path, json(&folder).as_bytes())?)?)
+}
+
+impl Default for Folder {
+    fn default() -> Folder {
+        Folder { lightmesh_films: VERSION, xxh3: String::new(), films: BTreeMap::new() }
     }
 }
 
-fn write(path: &Path, folder: &Folder) -> Result<(), ManifestError> {
-    Ok(publish_record(Ready::with(path, json(folder).as_bytes())?)?)
+impl Folder {
+    /// The checksum of the films, by what is recorded of them and not by how it is typed.
+    fn checksum(&self) -> String {
+        let mut hash = Xxh3::new();
+        hash.update(json(&self.films).as_bytes());
+        hex(&hash)
+    }
 }
 
 /// Reads a file to its end; returns its size.

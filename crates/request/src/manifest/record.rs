@@ -10,7 +10,7 @@ use lightmesh_files::{directory, identity};
 use lightmesh_scene::Scene;
 use xxhash_rust::xxh3::Xxh3;
 
-use super::{Chosen, FileRecord, Folder, Record, VERSION, digest, hex, place, read, scene, settings, write};
+use super::{Chosen, FileRecord, Folder, Record, digest, hex, place, read, scene, settings, write};
 use crate::error::{ManifestError, RequestError};
 use crate::files::PictureFiles;
 use crate::film::{Film, FrameRange};
@@ -80,7 +80,7 @@ impl Manifest {
         manifest.own.extend(&work.numbers);
         match manifest.save() {
             // What is there belongs to somebody else.
-            Err(error @ ManifestError::Foreign { .. }) if !order.request.resume => {
+            Err(error @ (ManifestError::Foreign { .. } | ManifestError::Damaged { .. })) if !order.request.resume => {
                 host.warning(&format!("this film cannot be resumed: {}", error.told(host.words())));
                 manifest.path = None;
             }
@@ -128,7 +128,7 @@ impl Manifest {
         let Some(path) = &self.path else { return Ok(()) };
         let begin = Instant::now();
         let _turn = wait_for_turn(directory(path));
-        let mut folder = read(path)?.unwrap_or_else(|| Folder { lightmesh_films: VERSION, films: BTreeMap::new() });
+        let mut folder = read(path)?.unwrap_or_else(Folder::default);
         let mut record = self.record.clone();
         if let Some(earlier) = folder.films.remove(&self.film).filter(|earlier| earlier.is_of_same(&record)) {
             let others = earlier.frames.into_iter().filter(|(number, _)| !self.own.contains(number));
@@ -140,7 +140,7 @@ impl Manifest {
             }
         }
         folder.films.insert(self.film.clone(), record);
-        write(path, &folder)?;
+        write(path, folder)?;
         (self.is_ahead, self.written, self.cost) = (false, Instant::now(), begin.elapsed());
         Ok(())
     }

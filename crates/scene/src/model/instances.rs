@@ -9,6 +9,7 @@
 use std::ops::Range;
 
 use glam::{DAffine3, DMat3, DMat4, DVec3, Vec3};
+use lightmesh_memory::Budget;
 
 use super::bounds::Bounds;
 use crate::parse_by_name;
@@ -26,13 +27,15 @@ const LONGEST: f64 = 1e4;
 
 /// Copies of a shape are as fast as they can be; from this number of triangles on, they take too much memory and time to build.
 const MANY: usize = 1 << 20;
-/// A shape of less triangles takes hardly more memory than the places of it.
+/// A shape of less triangles takes hardly more memory than the places of it, and copies are faster.
 const FEW: usize = 64;
+/// Bytes that a copied triangle takes at most while its structure is built.
+const BYTES_OF_COPY: u64 = 512;
 
 /// Whether shapes that are placed many times are stored once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Instancing {
-    /// If copies would have more than a million triangles.
+    /// If copies would have more than a million triangles; of shapes of a few triangles, if they would not fit into memory.
     #[default]
     Auto,
     /// Always.
@@ -57,15 +60,17 @@ impl Instancing {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            Instancing::Auto => "If copies would have more than a million triangles",
+            Instancing::Auto => "If copies would have more than a million triangles, or not fit into memory",
             Instancing::Always => "Wherever a mesh has several places",
             Instancing::Never => "A copy for each place; grids need this",
         }
     }
 
-    pub(crate) fn shares(self, places: usize, triangles: usize) -> bool {
+    pub(crate) fn shares(self, places: usize, triangles: usize, budget: &Budget) -> bool {
+        let copied = places.saturating_mul(triangles);
+        let fits = || budget.check((copied as u64).saturating_mul(BYTES_OF_COPY)).is_ok();
         match self {
-            Instancing::Auto => triangles >= FEW && places.saturating_mul(triangles) > MANY,
+            Instancing::Auto => copied > MANY && (triangles >= FEW || !fits()),
             Instancing::Always => true,
             Instancing::Never => false,
         }

@@ -17,7 +17,7 @@ pub enum MeshSaveError {
     #[error(transparent)]
     Target(#[from] TargetError),
     /// Writing failed, most often for lack of space; a file that was there is as it was.
-    #[error("cannot write {}: {reason}; nothing was written, check the space left on the disk", path.display())]
+    #[error("cannot write {}: {reason}; an earlier file of this name is unchanged, check the space left on the disk", path.display())]
     Write {
         /// The target.
         path: PathBuf,

@@ -11,7 +11,8 @@ use crate::model::animation::parts::MovingInstance;
 impl Draft {
     /// Whether a shape of so many triangles is stored once for all of its places.
     pub(crate) fn shares(&self, places: usize, triangles: usize) -> bool {
-        self.beside_shape.is_none() && places > 1 && triangles > 0 && self.instancing.shares(places, triangles)
+        let budget = &self.access.budget;
+        self.beside_shape.is_none() && places > 1 && triangles > 0 && self.instancing.shares(places, triangles, budget)
     }
 
     /// Adds a shape that is nowhere until it is [placed](Draft::place): `add` adds its parts as they are without a place, in reverse order of
