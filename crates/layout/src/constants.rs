@@ -455,32 +455,32 @@ constants! {
     MAX_LEVEL: i32 = 58;
     /// Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
     SURFACE_KINDS: u32 = 12;
-    /// How far sites move away from edges, in cells.
-    SITE_INWARDS: f32 = 0.0625;
-    /// Sites lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
-    SITE_MARGIN: f32 = 0.625;
-    /// A site is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
-    /// the ground below a floor would take the cell's only site from the floor.
-    SITE_OPEN: f32 = 1.0;
-    /// The same for sites that rays of others hit, of which smaller cells may have better ones.
+    /// How far records move away from edges, in cells.
+    RECORD_INWARDS: f32 = 0.0625;
+    /// Records lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
+    RECORD_MARGIN: f32 = 0.625;
+    /// A record is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
+    /// the ground below a floor would take the cell's only record from the floor.
+    RECORD_OPEN: f32 = 1.0;
+    /// The same for records that rays of others hit, of which smaller cells may have better ones.
     NODE_OPEN: f32 = 0.25;
     /// How many points of a kind are looked at for an open one.
-    SITE_CANDIDATES: u32 = 4;
-    /// The distance within which sites count, in cells.
-    SITE_RADIUS: f32 = 1.5;
+    RECORD_CANDIDATES: u32 = 4;
+    /// The distance within which records count, in cells.
+    RECORD_RADIUS: f32 = 1.5;
     /// The cells around one, and itself, in which they are: the ball around a place ends two cells away, at most.
     CELLS_AROUND: u32 = 5 * 5 * 5;
     /// The distance from each other's tangent planes within which they count, in cells.
-    SITE_THICKNESS: f32 = 0.75;
+    RECORD_THICKNESS: f32 = 0.75;
     /// The cosine of the angle between normals beyond which they do not.
-    SITE_COSINE: f32 = 0.75;
-    /// Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
+    RECORD_COSINE: f32 = 0.75;
+    /// Records that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
     /// sum.
     MIN_SPREAD: f32 = 0.02;
-    /// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
-    SITE_RAISED: f32 = 0.15;
+    /// Segments to records begin and end above the surface by this share of their length, so that gentle curves do not hide them.
+    RECORD_RAISED: f32 = 0.15;
     /// They rise no farther than this share of the way to what is above.
-    SITE_STEP: f32 = 0.5;
+    RECORD_STEP: f32 = 0.5;
     /// They rise no more slowly than by this cosine, unless something is in the way.
     MIN_RISE: f32 = 0.3;
     /// Bins of directions along each side of the octahedron's square.
@@ -495,20 +495,20 @@ constants! {
     BLEND_FROM: f32 = 1.75;
     /// Near is what is not farther than this many coarse cells.
     NEAR_CELLS: f32 = 2.0;
-    /// How far near rays reach, relative to what coarse sites leave out as near. What is near to these may be farther away here, but only
+    /// How far near rays reach, relative to what coarse records leave out as near. What is near to these may be farther away here, but only
     /// from some: with 1, light is too bright before walls, with 2 too dark.
     NEAR_REACH: f32 = 1.25;
-    /// Sites cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
+    /// Records cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
     EVEN: f32 = 0.45;
-    /// This share of a site's second rays goes where its first ones see different things; the rest goes everywhere.
+    /// This share of a record's second rays goes where its first ones see different things; the rest goes everywhere.
     GUIDED: f32 = 0.5;
     /// First rays along each side of a block of directions.
     GUIDE_BLOCK: u32 = 2;
     /// How many rays beside a block tell how different what is seen in it is.
     GUIDE_RING: u32 = 1;
-    /// A site's first ray counts as much as this many of its second ones, which go where they are needed.
+    /// A record's first ray counts as much as this many of its second ones, which go where they are needed.
     FIRST_COUNT: f32 = 0.25;
-    /// Near rays see a site's surroundings as crowded where the mean inverse distance of what they hit, times the size of the coarse cells, is more:
+    /// Near rays see a record's surroundings as crowded where the mean inverse distance of what they hit, times the size of the coarse cells, is more:
     /// then it asks coarse cells of half the size.
     CROWDED: f32 = 0.5;
     /// To ask cells that are smaller once more, that must be more than this many times as much.
@@ -521,23 +521,23 @@ constants! {
     SKY_CONE: f32 = 0.25;
     /// What a ray hits is asked for light in a cell of this share of the distance.
     BOUNCE_SIZE: f32 = 0.2;
-    /// If a site is hidden or covered, cells that are smaller by up to this many levels are asked, one after the other.
+    /// If a record is hidden or covered, cells that are smaller by up to this many levels are asked, one after the other.
     BOUNCE_FINER: i32 = 2;
-    /// The rays of a site that other rays hit form a square with this side.
+    /// The rays of a record that other rays hit form a square with this side.
     BOUNCE_SIDE: u32 = 8;
-    /// What is so many times brighter than the mean of what a fan sees asks the smallest of these at once: around it, light changes fast.
+    /// What is so many times brighter than the mean of what a hemisphere of rays sees asks the smallest of these at once: around it, light changes fast.
     BRIGHT: f32 = 8.0;
     /// Where there are more lights, what a ray hits asks about so many of them, chosen by what they may give.
     CHOSEN_LIGHTS: u32 = 4;
     /// How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's. After so many, a share of
     /// the twelfth power of what surfaces reflect is missing: 2 % in a closed room that reflects 0.7.
     ORDERS: u32 = 12;
-    /// Where sites that rays hit are looked for first, in cells around the middle of theirs; then twice as far, up to a whole cell.
+    /// Where records that rays hit are looked for first, in cells around the middle of theirs; then twice as far, up to a whole cell.
     NODE_REACH: f32 = 0.125;
     /// A table in which a name is not found after this many places is too full.
     NAME_PROBES: u32 = 1024;
     /// Added to the number of names of such a table.
     FULL_TABLE: u32 = 1 << 31;
-    /// No name, site or node.
+    /// No name, record or node.
     NO_NUMBER: u32 = u32::MAX;
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::literal::Constant;
 use crate::record::Outline;
-use crate::{codes, constants, counters, gathered, geometry, mesh, scene, stages, structure};
+use crate::{codes, constants, counters, geometry, irradiance_cache, mesh, scene, stages, structure};
 
 /// How the two compilers of kernels express `offsetof`: NVRTC has no `<stddef.h>`, and no builtin of that name.
 const PLACE_OF: &str = "
@@ -28,7 +28,7 @@ pub fn header() -> String {
     text.push_str(PLACE_OF);
     print_records(&mut text, &[counters::outlines(), geometry::outlines(), scene::outlines()]);
     structure::print(&mut text);
-    print_records(&mut text, &[mesh::outlines(), gathered::outlines(), stages::outlines()]);
+    print_records(&mut text, &[mesh::outlines(), irradiance_cache::outlines(), stages::outlines()]);
     text
 }
 

@@ -6,7 +6,7 @@
 //! * [`geometry`]: rays, hits, triangles, acceleration structures.
 //! * [`scene`]: lights, materials, and the whole scene as a device holds it.
 //! * [`mesh`]: the light mesh and the results computed on it.
-//! * [`gathered`]: gathered light, and the arguments of its kernels.
+//! * [`irradiance_cache`]: the irradiance cache of gathered light, and the arguments of its kernels.
 //! * [`stages`]: the arguments of all other kernels.
 //! * [`Structure`]: the acceleration structures; every kernel that traces rays exists once for each.
 //! * [`constants`]: numbers that both sides must agree on; those of a record are its own.
@@ -17,9 +17,9 @@
 mod codes;
 pub mod constants;
 pub mod counters;
-pub mod gathered;
 pub mod geometry;
 mod header;
+pub mod irradiance_cache;
 mod literal;
 pub mod mesh;
 mod record;

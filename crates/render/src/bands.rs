@@ -5,8 +5,8 @@ use lightmesh_trace::accel::{Hit, Ray};
 
 use crate::error::RenderError;
 use crate::footprint::Cone;
-use crate::gathered::Gathering;
 use crate::plan::Plan;
+use crate::stages::irradiance_cache::Gathering;
 
 /// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
 pub const RESERVE: u64 = 32 << 20;

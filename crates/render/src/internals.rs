@@ -42,11 +42,11 @@ pub mod footprint {
     pub use crate::footprint::{axes, curvature};
 }
 
-pub mod gathered {
-    pub use crate::gathered::directions::{BINS, above, basis, bin};
-    pub use crate::gathered::guide::guided;
-    pub use crate::gathered::identity::Identity;
-    pub use crate::gathered::saved::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite};
+pub mod irradiance_cache {
+    pub use crate::stages::irradiance_cache::directions::{BINS, above, basis, bin};
+    pub use crate::stages::irradiance_cache::guide::guided;
+    pub use crate::stages::irradiance_cache::identity::Identity;
+    pub use crate::stages::irradiance_cache::saved::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedRecord};
 }
 
 pub mod light_mesh {

@@ -19,7 +19,6 @@ mod deformation;
 mod device;
 mod error;
 mod footprint;
-mod gathered;
 mod gpu;
 #[doc(hidden)]
 pub mod internals;
@@ -75,7 +74,6 @@ pub use data::visibility::Visibility;
 pub use device::{Choice, Device, DeviceReport, UnknownDevice, devices};
 pub use error::RenderError;
 pub use footprint::Cone;
-pub use gathered::{Gathering, SurfaceLight};
 pub use observer::{Observer, Progress, Unobserved};
 pub use plan::{BytesPerRay, Plan};
 pub use prepared::{PreparedGeometry, PreparedScene};
@@ -87,6 +85,8 @@ pub use settings::{
     ShortTests, Step, UnknownCrop, UnknownStep,
 };
 pub use stage::{Seconds, Stage};
+pub use stages::irradiance_cache::Gathering;
+pub use stages::irradiance_cache::cpu::SurfaceLight;
 pub use stats::{CameraStats, DeviceStats, LatticeStats, MemoryStats, SceneStats, SettingsStats, Stats};
 pub use surface::SurfacePoint;
 pub use view::{View, Window};

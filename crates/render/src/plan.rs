@@ -5,7 +5,7 @@ use lightmesh_trace::accel::Hit;
 use crate::antialiasing::Antialiasing;
 use crate::data::lights::LightGroups;
 use crate::data::mattes::{ranks_of, slots_of};
-use crate::gathered::Gathering;
+use crate::stages::irradiance_cache::Gathering;
 
 /// Bytes that a technique needs per ray at its peak, on the host and on a device, with the shares of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

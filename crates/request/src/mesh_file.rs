@@ -45,7 +45,7 @@ impl Mesh {
         let load = || renderer.load_cache(path, prepared, &plan.settings);
         match host.during(&format!("reading {}", path.display()), load) {
             Ok(cache) => {
-                let what = amount(cache.len(), cache.sites_read());
+                let what = amount(cache.len(), cache.records_read());
                 host.note(&format!("{}: read {what}", path.display()));
                 mesh.cache = cache;
             }
@@ -71,8 +71,8 @@ impl Mesh {
     pub(crate) fn save(&self, prepared: &PreparedScene, host: &dyn Host) -> Result<(), Error> {
         let Some(path) = &self.file else { return Ok(()) };
         let saved = host.during(&format!("writing {}", path.display()), || self.cache.save(path, prepared))?;
-        if let Some(SavedMesh { values, sites, bytes, .. }) = saved {
-            let (path, what, bytes) = (path.display(), amount(values, sites), Bytes(bytes));
+        if let Some(SavedMesh { values, records, bytes, .. }) = saved {
+            let (path, what, bytes) = (path.display(), amount(values, records), Bytes(bytes));
             host.note(&format!("{path}: wrote {what}, {bytes}"));
         }
         Ok(())
@@ -80,13 +80,13 @@ impl Mesh {
 }
 
 /// How much a file holds.
-fn amount(values: u64, sites: u64) -> String {
+fn amount(values: u64, records: u64) -> String {
     let of_points = format!("{values} values of light points");
-    let of_sites = format!("{sites} sites of gathered light");
-    match (values, sites) {
+    let of_records = format!("{records} records of gathered light");
+    match (values, records) {
         (_, 0) => of_points,
-        (0, _) => of_sites,
-        _ => format!("{of_points} and {of_sites}"),
+        (0, _) => of_records,
+        _ => format!("{of_points} and {of_records}"),
     }
 }
 

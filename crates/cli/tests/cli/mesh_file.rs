@@ -129,12 +129,12 @@ fn gathered_light_is_kept_from_run_to_run() {
     assert!(
         made == all
             && first.stderr.contains("room.mesh: wrote ")
-            && first.stderr.contains(" sites of gathered light, "),
+            && first.stderr.contains(" records of gathered light, "),
         "{first:?}"
     );
     let (again, [made, all]) = render(&["clear"]);
     assert!(
-        again.stderr.contains("room.mesh: read ") && again.stderr.contains(" sites of gathered light\n"),
+        again.stderr.contains("room.mesh: read ") && again.stderr.contains(" records of gathered light\n"),
         "{again:?}"
     );
     assert!(4 * made < all && !again.stderr.contains("warning"), "{made} of {all}: {again:?}");

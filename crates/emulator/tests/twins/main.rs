@@ -4,7 +4,7 @@
 //! with `LIGHTMESH_REQUIRE_GPU=1` they fail. `cargo test -p lightmesh-emulator --test twins -- garden` runs the cases of one scene.
 
 #[cfg(unix)]
-mod gathered;
+mod irradiance_cache;
 #[cfg(unix)]
 mod kept;
 #[cfg(unix)]

@@ -12,7 +12,7 @@ use lightmesh_render::{Device, devices};
 use lightmesh_testkit::runs_all;
 
 use crate::scenes::ACCELERATIONS;
-use crate::{gathered, kept, pictures, stages, structures, textured};
+use crate::{irradiance_cache, kept, pictures, stages, structures, textured};
 
 /// Where cases run.
 pub(crate) trait Target: Runtime {
@@ -64,7 +64,7 @@ impl<R: Target> Case<R> {
 /// All cases.
 fn cases<R: Target>() -> impl Iterator<Item = Case<R>> {
     let pictures = pictures::cases().into_iter().chain(textured::cases());
-    stages::cases().into_iter().chain(pictures).chain(kept::cases()).chain(gathered::cases())
+    stages::cases().into_iter().chain(pictures).chain(kept::cases()).chain(irradiance_cache::cases())
 }
 
 /// The emulator's trials, and those of all CUDA devices.

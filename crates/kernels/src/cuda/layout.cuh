@@ -404,31 +404,31 @@
 // Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
 #define SURFACE_KINDS 12u
 // How far sites move away from edges, in cells.
-#define SITE_INWARDS 0x1p-4f
+#define RECORD_INWARDS 0x1p-4f
 // Sites lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
-#define SITE_MARGIN 0x1.4p-1f
+#define RECORD_MARGIN 0x1.4p-1f
 // A site is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
 // the ground below a floor would take the cell's only site from the floor.
-#define SITE_OPEN 0x1p0f
+#define RECORD_OPEN 0x1p0f
 // The same for sites that rays of others hit, of which smaller cells may have better ones.
 #define NODE_OPEN 0x1p-2f
 // How many points of a kind are looked at for an open one.
-#define SITE_CANDIDATES 4u
+#define RECORD_CANDIDATES 4u
 // The distance within which sites count, in cells.
-#define SITE_RADIUS 0x1.8p0f
+#define RECORD_RADIUS 0x1.8p0f
 // The cells around one, and itself, in which they are: the ball around a place ends two cells away, at most.
 #define CELLS_AROUND 125u
 // The distance from each other's tangent planes within which they count, in cells.
-#define SITE_THICKNESS 0x1.8p-1f
+#define RECORD_THICKNESS 0x1.8p-1f
 // The cosine of the angle between normals beyond which they do not.
-#define SITE_COSINE 0x1.8p-1f
+#define RECORD_COSINE 0x1.8p-1f
 // Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
 // sum.
 #define MIN_SPREAD 0x1.47ae14p-6f
 // Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
-#define SITE_RAISED 0x1.333334p-3f
+#define RECORD_RAISED 0x1.333334p-3f
 // They rise no farther than this share of the way to what is above.
-#define SITE_STEP 0x1p-1f
+#define RECORD_STEP 0x1p-1f
 // They rise no more slowly than by this cosine, unless something is in the way.
 #define MIN_RISE 0x1.333334p-2f
 // Bins of directions along each side of the octahedron's square.
@@ -1310,25 +1310,25 @@ static_assert(PLACE_OF(Names, count) == 24, "place of Names::count");
 static_assert(PLACE_OF(Names, capacity) == 32, "place of Names::capacity");
 static_assert(PLACE_OF(Names, room) == 36, "place of Names::room");
 
-struct alignas(8) Site {
+struct alignas(8) Record {
     Vec3 position;
     int level;
     Vec3 origin;
     Vec3 normal;
     unsigned long long seed;
 };
-static_assert(sizeof(Site) == 48, "size of Site");
-static_assert(PLACE_OF(Site, position) == 0, "place of Site::position");
-static_assert(PLACE_OF(Site, level) == 12, "place of Site::level");
-static_assert(PLACE_OF(Site, origin) == 16, "place of Site::origin");
-static_assert(PLACE_OF(Site, normal) == 28, "place of Site::normal");
-static_assert(PLACE_OF(Site, seed) == 40, "place of Site::seed");
+static_assert(sizeof(Record) == 48, "size of Record");
+static_assert(PLACE_OF(Record, position) == 0, "place of Record::position");
+static_assert(PLACE_OF(Record, level) == 12, "place of Record::level");
+static_assert(PLACE_OF(Record, origin) == 16, "place of Record::origin");
+static_assert(PLACE_OF(Record, normal) == 28, "place of Record::normal");
+static_assert(PLACE_OF(Record, seed) == 40, "place of Record::seed");
 
 struct alignas(8) SurfaceCells {
     Names cells;
     unsigned long long *ranges;
-    Site *sites;
-    unsigned *site_count;
+    Record *records;
+    unsigned *record_count;
     unsigned *values;
     unsigned *owners;
     unsigned *value_count;
@@ -1336,8 +1336,8 @@ struct alignas(8) SurfaceCells {
 static_assert(sizeof(SurfaceCells) == 88, "size of SurfaceCells");
 static_assert(PLACE_OF(SurfaceCells, cells) == 0, "place of SurfaceCells::cells");
 static_assert(PLACE_OF(SurfaceCells, ranges) == 40, "place of SurfaceCells::ranges");
-static_assert(PLACE_OF(SurfaceCells, sites) == 48, "place of SurfaceCells::sites");
-static_assert(PLACE_OF(SurfaceCells, site_count) == 56, "place of SurfaceCells::site_count");
+static_assert(PLACE_OF(SurfaceCells, records) == 48, "place of SurfaceCells::records");
+static_assert(PLACE_OF(SurfaceCells, record_count) == 56, "place of SurfaceCells::record_count");
 static_assert(PLACE_OF(SurfaceCells, values) == 64, "place of SurfaceCells::values");
 static_assert(PLACE_OF(SurfaceCells, owners) == 72, "place of SurfaceCells::owners");
 static_assert(PLACE_OF(SurfaceCells, value_count) == 80, "place of SurfaceCells::value_count");
@@ -1357,11 +1357,11 @@ static_assert(PLACE_OF(LightPlace, share) == 28, "place of LightPlace::share");
 static_assert(PLACE_OF(LightPlace, origin) == 32, "place of LightPlace::origin");
 
 struct alignas(4) Link {
-    unsigned site;
+    unsigned record;
     float weight;
 };
 static_assert(sizeof(Link) == 8, "size of Link");
-static_assert(PLACE_OF(Link, site) == 0, "place of Link::site");
+static_assert(PLACE_OF(Link, record) == 0, "place of Link::record");
 static_assert(PLACE_OF(Link, weight) == 4, "place of Link::weight");
 
 struct alignas(4) SurfaceLight {
@@ -1382,17 +1382,17 @@ static_assert(sizeof(Bins) == 1024, "size of Bins");
 static_assert(PLACE_OF(Bins, sums) == 0, "place of Bins::sums");
 static_assert(PLACE_OF(Bins, counts) == 768, "place of Bins::counts");
 
-struct alignas(4) FarLight {
+struct alignas(4) CoarseLight {
     SurfaceLight light;
     Bins all;
     Bins beyond;
     unsigned has_near;
 };
-static_assert(sizeof(FarLight) == 2112, "size of FarLight");
-static_assert(PLACE_OF(FarLight, light) == 0, "place of FarLight::light");
-static_assert(PLACE_OF(FarLight, all) == 60, "place of FarLight::all");
-static_assert(PLACE_OF(FarLight, beyond) == 1084, "place of FarLight::beyond");
-static_assert(PLACE_OF(FarLight, has_near) == 2108, "place of FarLight::has_near");
+static_assert(sizeof(CoarseLight) == 2112, "size of CoarseLight");
+static_assert(PLACE_OF(CoarseLight, light) == 0, "place of CoarseLight::light");
+static_assert(PLACE_OF(CoarseLight, all) == 60, "place of CoarseLight::all");
+static_assert(PLACE_OF(CoarseLight, beyond) == 1084, "place of CoarseLight::beyond");
+static_assert(PLACE_OF(CoarseLight, has_near) == 2108, "place of CoarseLight::has_near");
 
 struct alignas(4) SeenRay {
     Vec3 position;
@@ -1438,10 +1438,10 @@ static_assert(sizeof(NodeLink) == 16, "size of NodeLink");
 static_assert(PLACE_OF(NodeLink, node) == 0, "place of NodeLink::node");
 static_assert(PLACE_OF(NodeLink, weight) == 4, "place of NodeLink::weight");
 
-struct alignas(8) TakeSites {
-    const Site *sites;
+struct alignas(8) TakeRecords {
+    const Record *records;
     const unsigned *numbers;
-    Site *taken;
+    Record *taken;
     LightPlace *places;
     unsigned *owners;
     unsigned first;
@@ -1449,16 +1449,16 @@ struct alignas(8) TakeSites {
     int coarser;
     unsigned spare;
 };
-static_assert(sizeof(TakeSites) == 56, "size of TakeSites");
-static_assert(PLACE_OF(TakeSites, sites) == 0, "place of TakeSites::sites");
-static_assert(PLACE_OF(TakeSites, numbers) == 8, "place of TakeSites::numbers");
-static_assert(PLACE_OF(TakeSites, taken) == 16, "place of TakeSites::taken");
-static_assert(PLACE_OF(TakeSites, places) == 24, "place of TakeSites::places");
-static_assert(PLACE_OF(TakeSites, owners) == 32, "place of TakeSites::owners");
-static_assert(PLACE_OF(TakeSites, first) == 40, "place of TakeSites::first");
-static_assert(PLACE_OF(TakeSites, count) == 44, "place of TakeSites::count");
-static_assert(PLACE_OF(TakeSites, coarser) == 48, "place of TakeSites::coarser");
-static_assert(PLACE_OF(TakeSites, spare) == 52, "place of TakeSites::spare");
+static_assert(sizeof(TakeRecords) == 56, "size of TakeRecords");
+static_assert(PLACE_OF(TakeRecords, records) == 0, "place of TakeRecords::records");
+static_assert(PLACE_OF(TakeRecords, numbers) == 8, "place of TakeRecords::numbers");
+static_assert(PLACE_OF(TakeRecords, taken) == 16, "place of TakeRecords::taken");
+static_assert(PLACE_OF(TakeRecords, places) == 24, "place of TakeRecords::places");
+static_assert(PLACE_OF(TakeRecords, owners) == 32, "place of TakeRecords::owners");
+static_assert(PLACE_OF(TakeRecords, first) == 40, "place of TakeRecords::first");
+static_assert(PLACE_OF(TakeRecords, count) == 44, "place of TakeRecords::count");
+static_assert(PLACE_OF(TakeRecords, coarser) == 48, "place of TakeRecords::coarser");
+static_assert(PLACE_OF(TakeRecords, spare) == 52, "place of TakeRecords::spare");
 
 struct alignas(8) Lookup {
     Scene scene;
@@ -1480,12 +1480,12 @@ static_assert(PLACE_OF(Lookup, links) == 792, "place of Lookup::links");
 static_assert(PLACE_OF(Lookup, count) == 800, "place of Lookup::count");
 static_assert(PLACE_OF(Lookup, first) == 804, "place of Lookup::first");
 
-struct alignas(8) Fans {
+struct alignas(8) HemisphereRays {
     Scene scene;
     Rays rays;
     Sampling sampling;
     Tally tally;
-    const Site *sites;
+    const Record *records;
     ListedRay *list;
     float *weights;
     float *areas;
@@ -1501,29 +1501,29 @@ struct alignas(8) Fans {
     unsigned lamps;
     unsigned blocks;
 };
-static_assert(sizeof(Fans) == 920, "size of Fans");
-static_assert(PLACE_OF(Fans, scene) == 0, "place of Fans::scene");
-static_assert(PLACE_OF(Fans, rays) == 680, "place of Fans::rays");
-static_assert(PLACE_OF(Fans, sampling) == 800, "place of Fans::sampling");
-static_assert(PLACE_OF(Fans, tally) == 816, "place of Fans::tally");
-static_assert(PLACE_OF(Fans, sites) == 824, "place of Fans::sites");
-static_assert(PLACE_OF(Fans, list) == 832, "place of Fans::list");
-static_assert(PLACE_OF(Fans, weights) == 840, "place of Fans::weights");
-static_assert(PLACE_OF(Fans, areas) == 848, "place of Fans::areas");
-static_assert(PLACE_OF(Fans, hits) == 856, "place of Fans::hits");
-static_assert(PLACE_OF(Fans, seen) == 864, "place of Fans::seen");
-static_assert(PLACE_OF(Fans, levels) == 872, "place of Fans::levels");
-static_assert(PLACE_OF(Fans, brightness) == 880, "place of Fans::brightness");
-static_assert(PLACE_OF(Fans, ends) == 888, "place of Fans::ends");
-static_assert(PLACE_OF(Fans, count) == 896, "place of Fans::count");
-static_assert(PLACE_OF(Fans, side) == 900, "place of Fans::side");
-static_assert(PLACE_OF(Fans, reach) == 904, "place of Fans::reach");
-static_assert(PLACE_OF(Fans, is_near) == 908, "place of Fans::is_near");
-static_assert(PLACE_OF(Fans, lamps) == 912, "place of Fans::lamps");
-static_assert(PLACE_OF(Fans, blocks) == 916, "place of Fans::blocks");
+static_assert(sizeof(HemisphereRays) == 920, "size of HemisphereRays");
+static_assert(PLACE_OF(HemisphereRays, scene) == 0, "place of HemisphereRays::scene");
+static_assert(PLACE_OF(HemisphereRays, rays) == 680, "place of HemisphereRays::rays");
+static_assert(PLACE_OF(HemisphereRays, sampling) == 800, "place of HemisphereRays::sampling");
+static_assert(PLACE_OF(HemisphereRays, tally) == 816, "place of HemisphereRays::tally");
+static_assert(PLACE_OF(HemisphereRays, records) == 824, "place of HemisphereRays::records");
+static_assert(PLACE_OF(HemisphereRays, list) == 832, "place of HemisphereRays::list");
+static_assert(PLACE_OF(HemisphereRays, weights) == 840, "place of HemisphereRays::weights");
+static_assert(PLACE_OF(HemisphereRays, areas) == 848, "place of HemisphereRays::areas");
+static_assert(PLACE_OF(HemisphereRays, hits) == 856, "place of HemisphereRays::hits");
+static_assert(PLACE_OF(HemisphereRays, seen) == 864, "place of HemisphereRays::seen");
+static_assert(PLACE_OF(HemisphereRays, levels) == 872, "place of HemisphereRays::levels");
+static_assert(PLACE_OF(HemisphereRays, brightness) == 880, "place of HemisphereRays::brightness");
+static_assert(PLACE_OF(HemisphereRays, ends) == 888, "place of HemisphereRays::ends");
+static_assert(PLACE_OF(HemisphereRays, count) == 896, "place of HemisphereRays::count");
+static_assert(PLACE_OF(HemisphereRays, side) == 900, "place of HemisphereRays::side");
+static_assert(PLACE_OF(HemisphereRays, reach) == 904, "place of HemisphereRays::reach");
+static_assert(PLACE_OF(HemisphereRays, is_near) == 908, "place of HemisphereRays::is_near");
+static_assert(PLACE_OF(HemisphereRays, lamps) == 912, "place of HemisphereRays::lamps");
+static_assert(PLACE_OF(HemisphereRays, blocks) == 916, "place of HemisphereRays::blocks");
 
-struct alignas(8) GuideFans {
-    Fans fans;
+struct alignas(8) GuideRays {
+    HemisphereRays hemispheres;
     const unsigned *uneven;
     unsigned *ends;
     unsigned first;
@@ -1531,31 +1531,31 @@ struct alignas(8) GuideFans {
     unsigned rays;
     unsigned spare;
 };
-static_assert(sizeof(GuideFans) == 952, "size of GuideFans");
-static_assert(PLACE_OF(GuideFans, fans) == 0, "place of GuideFans::fans");
-static_assert(PLACE_OF(GuideFans, uneven) == 920, "place of GuideFans::uneven");
-static_assert(PLACE_OF(GuideFans, ends) == 928, "place of GuideFans::ends");
-static_assert(PLACE_OF(GuideFans, first) == 936, "place of GuideFans::first");
-static_assert(PLACE_OF(GuideFans, count) == 940, "place of GuideFans::count");
-static_assert(PLACE_OF(GuideFans, rays) == 944, "place of GuideFans::rays");
-static_assert(PLACE_OF(GuideFans, spare) == 948, "place of GuideFans::spare");
+static_assert(sizeof(GuideRays) == 952, "size of GuideRays");
+static_assert(PLACE_OF(GuideRays, hemispheres) == 0, "place of GuideRays::hemispheres");
+static_assert(PLACE_OF(GuideRays, uneven) == 920, "place of GuideRays::uneven");
+static_assert(PLACE_OF(GuideRays, ends) == 928, "place of GuideRays::ends");
+static_assert(PLACE_OF(GuideRays, first) == 936, "place of GuideRays::first");
+static_assert(PLACE_OF(GuideRays, count) == 940, "place of GuideRays::count");
+static_assert(PLACE_OF(GuideRays, rays) == 944, "place of GuideRays::rays");
+static_assert(PLACE_OF(GuideRays, spare) == 948, "place of GuideRays::spare");
 
 struct alignas(8) ComeCloser {
-    Fans fans;
-    Site *sites;
+    HemisphereRays hemispheres;
+    Record *records;
     LightPlace *places;
 };
 static_assert(sizeof(ComeCloser) == 936, "size of ComeCloser");
-static_assert(PLACE_OF(ComeCloser, fans) == 0, "place of ComeCloser::fans");
-static_assert(PLACE_OF(ComeCloser, sites) == 920, "place of ComeCloser::sites");
+static_assert(PLACE_OF(ComeCloser, hemispheres) == 0, "place of ComeCloser::hemispheres");
+static_assert(PLACE_OF(ComeCloser, records) == 920, "place of ComeCloser::records");
 static_assert(PLACE_OF(ComeCloser, places) == 928, "place of ComeCloser::places");
 
 struct alignas(8) Bounce {
     Scene scene;
-    Fans fans;
+    HemisphereRays hemispheres;
     Names names;
     Node *nodes;
-    Site *sites;
+    Record *records;
     NodeLink *links;
     unsigned *listed;
     unsigned *listed_count;
@@ -1570,10 +1570,10 @@ struct alignas(8) Bounce {
 };
 static_assert(sizeof(Bounce) == 1720, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
-static_assert(PLACE_OF(Bounce, fans) == 680, "place of Bounce::fans");
+static_assert(PLACE_OF(Bounce, hemispheres) == 680, "place of Bounce::hemispheres");
 static_assert(PLACE_OF(Bounce, names) == 1600, "place of Bounce::names");
 static_assert(PLACE_OF(Bounce, nodes) == 1640, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, sites) == 1648, "place of Bounce::sites");
+static_assert(PLACE_OF(Bounce, records) == 1648, "place of Bounce::records");
 static_assert(PLACE_OF(Bounce, links) == 1656, "place of Bounce::links");
 static_assert(PLACE_OF(Bounce, listed) == 1664, "place of Bounce::listed");
 static_assert(PLACE_OF(Bounce, listed_count) == 1672, "place of Bounce::listed_count");
@@ -1586,45 +1586,45 @@ static_assert(PLACE_OF(Bounce, first) == 1708, "place of Bounce::first");
 static_assert(PLACE_OF(Bounce, count) == 1712, "place of Bounce::count");
 static_assert(PLACE_OF(Bounce, insist) == 1716, "place of Bounce::insist");
 
-struct alignas(8) GatherFar {
-    Fans fans;
-    FarLight *far;
+struct alignas(8) GatherCoarse {
+    HemisphereRays hemispheres;
+    CoarseLight *coarse;
     const unsigned *owners;
     unsigned *uneven;
     unsigned *uneven_count;
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherFar) == 960, "size of GatherFar");
-static_assert(PLACE_OF(GatherFar, fans) == 0, "place of GatherFar::fans");
-static_assert(PLACE_OF(GatherFar, far) == 920, "place of GatherFar::far");
-static_assert(PLACE_OF(GatherFar, owners) == 928, "place of GatherFar::owners");
-static_assert(PLACE_OF(GatherFar, uneven) == 936, "place of GatherFar::uneven");
-static_assert(PLACE_OF(GatherFar, uneven_count) == 944, "place of GatherFar::uneven_count");
-static_assert(PLACE_OF(GatherFar, first) == 952, "place of GatherFar::first");
-static_assert(PLACE_OF(GatherFar, before) == 956, "place of GatherFar::before");
+static_assert(sizeof(GatherCoarse) == 960, "size of GatherCoarse");
+static_assert(PLACE_OF(GatherCoarse, hemispheres) == 0, "place of GatherCoarse::hemispheres");
+static_assert(PLACE_OF(GatherCoarse, coarse) == 920, "place of GatherCoarse::coarse");
+static_assert(PLACE_OF(GatherCoarse, owners) == 928, "place of GatherCoarse::owners");
+static_assert(PLACE_OF(GatherCoarse, uneven) == 936, "place of GatherCoarse::uneven");
+static_assert(PLACE_OF(GatherCoarse, uneven_count) == 944, "place of GatherCoarse::uneven_count");
+static_assert(PLACE_OF(GatherCoarse, first) == 952, "place of GatherCoarse::first");
+static_assert(PLACE_OF(GatherCoarse, before) == 956, "place of GatherCoarse::before");
 
 struct alignas(8) GatherFine {
-    Fans fans;
+    HemisphereRays hemispheres;
     Lookup lookup;
-    const FarLight *far;
+    const CoarseLight *coarse;
     SurfaceLight *fine;
-    unsigned *alone;
-    unsigned *alone_count;
+    unsigned *misses;
+    unsigned *miss_count;
     unsigned first;
-    unsigned first_alone;
+    unsigned first_miss;
     unsigned count;
     unsigned spare;
 };
 static_assert(sizeof(GatherFine) == 1776, "size of GatherFine");
-static_assert(PLACE_OF(GatherFine, fans) == 0, "place of GatherFine::fans");
+static_assert(PLACE_OF(GatherFine, hemispheres) == 0, "place of GatherFine::hemispheres");
 static_assert(PLACE_OF(GatherFine, lookup) == 920, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, far) == 1728, "place of GatherFine::far");
+static_assert(PLACE_OF(GatherFine, coarse) == 1728, "place of GatherFine::coarse");
 static_assert(PLACE_OF(GatherFine, fine) == 1736, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, alone) == 1744, "place of GatherFine::alone");
-static_assert(PLACE_OF(GatherFine, alone_count) == 1752, "place of GatherFine::alone_count");
+static_assert(PLACE_OF(GatherFine, misses) == 1744, "place of GatherFine::misses");
+static_assert(PLACE_OF(GatherFine, miss_count) == 1752, "place of GatherFine::miss_count");
 static_assert(PLACE_OF(GatherFine, first) == 1760, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_alone) == 1764, "place of GatherFine::first_alone");
+static_assert(PLACE_OF(GatherFine, first_miss) == 1764, "place of GatherFine::first_miss");
 static_assert(PLACE_OF(GatherFine, count) == 1768, "place of GatherFine::count");
 static_assert(PLACE_OF(GatherFine, spare) == 1772, "place of GatherFine::spare");
 
@@ -1636,12 +1636,12 @@ struct alignas(8) GatherPoints {
     const SurfaceLight *fine;
     LightPlace *places;
     Vec3 *means;
-    unsigned *alone;
-    unsigned *alone_count;
-    Site *sites;
+    unsigned *misses;
+    unsigned *miss_count;
+    Record *records;
     LightPlace *asked;
     const SurfaceLight *own;
-    const FarLight *far;
+    const CoarseLight *coarse;
     Vec3 *light;
     Vec3 *normals;
     const Hit *samples;
@@ -1654,8 +1654,8 @@ struct alignas(8) GatherPoints {
     int least_level;
     unsigned first;
     unsigned count;
-    unsigned first_alone;
-    unsigned all_alone;
+    unsigned first_miss;
+    unsigned brute_force;
     unsigned spare;
 };
 static_assert(sizeof(GatherPoints) == 1776, "size of GatherPoints");
@@ -1666,12 +1666,12 @@ static_assert(PLACE_OF(GatherPoints, lookup) == 808, "place of GatherPoints::loo
 static_assert(PLACE_OF(GatherPoints, fine) == 1616, "place of GatherPoints::fine");
 static_assert(PLACE_OF(GatherPoints, places) == 1624, "place of GatherPoints::places");
 static_assert(PLACE_OF(GatherPoints, means) == 1632, "place of GatherPoints::means");
-static_assert(PLACE_OF(GatherPoints, alone) == 1640, "place of GatherPoints::alone");
-static_assert(PLACE_OF(GatherPoints, alone_count) == 1648, "place of GatherPoints::alone_count");
-static_assert(PLACE_OF(GatherPoints, sites) == 1656, "place of GatherPoints::sites");
+static_assert(PLACE_OF(GatherPoints, misses) == 1640, "place of GatherPoints::misses");
+static_assert(PLACE_OF(GatherPoints, miss_count) == 1648, "place of GatherPoints::miss_count");
+static_assert(PLACE_OF(GatherPoints, records) == 1656, "place of GatherPoints::records");
 static_assert(PLACE_OF(GatherPoints, asked) == 1664, "place of GatherPoints::asked");
 static_assert(PLACE_OF(GatherPoints, own) == 1672, "place of GatherPoints::own");
-static_assert(PLACE_OF(GatherPoints, far) == 1680, "place of GatherPoints::far");
+static_assert(PLACE_OF(GatherPoints, coarse) == 1680, "place of GatherPoints::coarse");
 static_assert(PLACE_OF(GatherPoints, light) == 1688, "place of GatherPoints::light");
 static_assert(PLACE_OF(GatherPoints, normals) == 1696, "place of GatherPoints::normals");
 static_assert(PLACE_OF(GatherPoints, samples) == 1704, "place of GatherPoints::samples");
@@ -1684,8 +1684,8 @@ static_assert(PLACE_OF(GatherPoints, pixels) == 1748, "place of GatherPoints::pi
 static_assert(PLACE_OF(GatherPoints, least_level) == 1752, "place of GatherPoints::least_level");
 static_assert(PLACE_OF(GatherPoints, first) == 1756, "place of GatherPoints::first");
 static_assert(PLACE_OF(GatherPoints, count) == 1760, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_alone) == 1764, "place of GatherPoints::first_alone");
-static_assert(PLACE_OF(GatherPoints, all_alone) == 1768, "place of GatherPoints::all_alone");
+static_assert(PLACE_OF(GatherPoints, first_miss) == 1764, "place of GatherPoints::first_miss");
+static_assert(PLACE_OF(GatherPoints, brute_force) == 1768, "place of GatherPoints::brute_force");
 static_assert(PLACE_OF(GatherPoints, spare) == 1772, "place of GatherPoints::spare");
 
 struct alignas(4) TileBox {

@@ -20,7 +20,6 @@ use crate::data::samples::PixelSamples;
 use crate::data::visibility::Visibility;
 use crate::device::cpu_name;
 use crate::error::RenderError;
-use crate::gathered::{self, Gathering, SurfaceLight};
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::plan::Plan;
 use crate::prepared::{PreparedScene, SeeThrough};
@@ -29,6 +28,8 @@ use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
 use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
+use crate::stages::irradiance_cache::cpu::SurfaceLight;
+use crate::stages::irradiance_cache::{self, Gathering};
 use crate::stages::pixel_samples::SampleRange;
 use crate::stages::primary_rays;
 use crate::view::View;
@@ -129,7 +130,7 @@ impl Backend for Cpu {
     stage_table!(stages_on_cpu);
 
     fn gather(&self, wave: &WaveOf<Cpu>, how: &Gathering, kept: &mut SurfaceLight) -> Result<Vec<Vec3>, RenderError> {
-        Ok(gathered::gather(wave, how, kept))
+        Ok(irradiance_cache::cpu::gather(wave, how, kept))
     }
 
     fn finish(&self, _: &RenderContext) -> Result<(), RenderError> {

@@ -19,8 +19,6 @@ use crate::cache::{Cache, DeviceTable};
 use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
-use crate::gathered::cuda::{DeviceGathered, DeviceSurfaceLight};
-use crate::gathered::{self, Gathering};
 use crate::gpu;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
@@ -30,6 +28,8 @@ use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
 use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
+use crate::stages::irradiance_cache::cuda::{DeviceGathered, DeviceSurfaceLight};
+use crate::stages::irradiance_cache::{self, Gathering};
 use crate::stages::pixel_samples::SampleRange;
 use crate::view::View;
 
@@ -145,7 +145,7 @@ impl<R: Runtime> Backend for Cuda<R> {
         how: &Gathering,
         kept: &mut DeviceSurfaceLight<R>,
     ) -> Result<DeviceGathered<R>, RenderError> {
-        gathered::cuda::gather(self, wave, how, kept)
+        irradiance_cache::cuda::gather(self, wave, how, kept)
     }
 
     fn finish(&self, context: &RenderContext) -> Result<(), RenderError> {

@@ -5,10 +5,10 @@ use std::cell::{Cell, RefCell};
 use super::Backend;
 use crate::cache::Cache;
 use crate::error::RenderError;
-use crate::gathered::Sources;
 use crate::prepared::PreparedScene;
 use crate::render_context::RenderContext;
 use crate::stage::Stage;
+use crate::stages::irradiance_cache::Sources;
 
 /// An image being rendered on a backend.
 pub(crate) struct StageRunner<'a, B: Backend> {

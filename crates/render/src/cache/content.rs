@@ -3,8 +3,8 @@
 use glam::{UVec3, Vec3};
 
 use super::stored::Stored;
-use crate::gathered::saved::SavedLight;
 use crate::prepared::PreparedScene;
+use crate::stages::irradiance_cache::saved::SavedLight;
 
 /// What a file holds of one geometry.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +47,8 @@ impl Content {
         self.points.iter().map(Section::len).sum()
     }
 
-    /// Number of sites that gathered light.
-    pub(super) fn sites(&self) -> u64 {
+    /// Number of records that gathered light.
+    pub(super) fn records(&self) -> u64 {
         self.gathered.iter().map(|gathered| gathered.light.len()).sum()
     }
 

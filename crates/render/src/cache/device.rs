@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use super::stored::{POINTS, Readable, ReadableAnswers, Stored, StoredAnswers, StoredColumn, bytes_of_brick};
 use super::{Allowance, ColumnKey, Invalidation, Table};
 use crate::error::RenderError;
-use crate::gathered::cuda::DeviceSurfaceLight;
-use crate::gathered::saved::SavedLight;
 use crate::gpu::points::DevicePoints;
 use crate::gpu::{BLOCK, Cuda, blocks_for};
 use crate::light_mesh::{BrickKey, brick_hash};
+use crate::stages::irradiance_cache::cuda::DeviceSurfaceLight;
+use crate::stages::irradiance_cache::saved::SavedLight;
 
 const ADMIT: Kernel = Kernel { module: "cache", name: "admit_bricks" };
 const FIND_UNKNOWN: Kernel = Kernel { module: "cache", name: "find_unknown" };

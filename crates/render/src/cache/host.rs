@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use super::stored::{POINTS, Readable, ReadableAnswers, SLACK, Stored, StoredAnswers, StoredColumn, bytes_of_rows};
 use super::{Allowance, ColumnKey, Invalidation, Table};
 use crate::data::light_point_visibility::VisibilityOfLight;
-use crate::gathered::SurfaceLight;
-use crate::gathered::saved::SavedLight;
 use crate::light_mesh::{BrickKey, bits};
+use crate::stages::irradiance_cache::cpu::SurfaceLight;
+use crate::stages::irradiance_cache::saved::SavedLight;
 
 /// Rows of bricks, columns of lights. Known values do not move when bricks are added or lights change.
 #[derive(Default)]

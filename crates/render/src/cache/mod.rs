@@ -30,10 +30,10 @@ pub(crate) use invalidation::Invalidation;
 use stored::Stored;
 
 use crate::error::RenderError;
-use crate::gathered::Sources;
-use crate::gathered::saved::SavedLight;
 use crate::light_mesh::Lattice;
 use crate::prepared::{PreparedGeometry, PreparedScene};
+use crate::stages::irradiance_cache::Sources;
+use crate::stages::irradiance_cache::saved::SavedLight;
 
 /// The visibility of light points, cached for later images, and light that surfaces gather: for a moving camera, or, of light points, for
 /// lights of which only some move. Pass it to
@@ -93,10 +93,10 @@ impl MeshCache {
         Some(MeshFileError { path: self.file.clone(), fault })
     }
 
-    /// Number of sites whose gathered light was read from a file and not yet asked for.
-    pub fn sites_read(&self) -> u64 {
-        let on_devices: u64 = self.devices.iter().map(|(_, cache)| cache.read.sites()).sum();
-        self.read.sites() + self.host.read.sites() + on_devices
+    /// Number of records whose gathered light was read from a file and not yet asked for.
+    pub fn records_read(&self) -> u64 {
+        let on_devices: u64 = self.devices.iter().map(|(_, cache)| cache.read.records()).sum();
+        self.read.records() + self.host.read.records() + on_devices
     }
 
     /// Number of cached values: light points times lights.

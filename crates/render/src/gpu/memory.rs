@@ -11,8 +11,8 @@ use lightmesh_layout::mesh::Item;
 
 use super::device::Cuda;
 use crate::error::RenderError;
-use crate::gathered::cuda;
 use crate::plan::Plan;
+use crate::stages::irradiance_cache::cuda;
 
 /// Expected number of surface points per item: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
 const POINTS_PER_ITEM: u64 = 8;

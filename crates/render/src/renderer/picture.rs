@@ -19,7 +19,6 @@ use crate::backend::stage_runner::StageRunner;
 use crate::cache::Cache;
 use crate::data::picture::Picture;
 use crate::error::RenderError;
-use crate::gathered::Sources;
 use crate::observer::Observer;
 use crate::passes::Passes;
 use crate::plan::Plan;
@@ -28,6 +27,7 @@ use crate::render_context::RenderContext;
 use crate::settings::{Crop, Settings};
 use crate::shading::ids::catchers;
 use crate::shadow::rows::KnownRows;
+use crate::stages::irradiance_cache::Sources;
 use crate::stats::Stats;
 
 /// Renders one image, with the `cache` of this backend, and the rows of samples that images share.

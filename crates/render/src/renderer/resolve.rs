@@ -9,7 +9,6 @@ use crate::antialiasing::Antialiasing;
 use crate::bands;
 use crate::data::lights::LightGroups;
 use crate::error::RenderError;
-use crate::gathered::Gathering;
 use crate::observer::Observer;
 use crate::plan::{BytesPerRay, Plan};
 use crate::prepared::PreparedScene;
@@ -17,6 +16,7 @@ use crate::probes::{GivenPoints, Probes, ROW};
 use crate::render_context::{RenderContext, Sampling};
 use crate::settings::{AmbientSource, Crop, Setting, Settings, Sharing};
 use crate::shading::facets::{directions, mirrored_share};
+use crate::stages::irradiance_cache::Gathering;
 use crate::techniques::{Technique, VisibilityQuery};
 use crate::view::{View, Window};
 
@@ -110,7 +110,7 @@ impl<'a> Resolved<'a> {
             compositing: settings.layers,
             gathering: match settings.ambient_light.for_scene(&scene.scene) {
                 AmbientSource::Mesh => Some(Gathering::new(&whole, &bounds, settings.quality, left)),
-                AmbientSource::Rays => Some(Gathering::alone(&whole, &bounds, settings.quality, left)),
+                AmbientSource::Rays => Some(Gathering::brute_force(&whole, &bounds, settings.quality, left)),
                 AmbientSource::Auto | AmbientSource::Constant => None,
             },
             layers: (settings.layers || settings.transparent && antialiasing.is_none()).then_some(lights.lights),

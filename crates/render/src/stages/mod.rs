@@ -7,6 +7,7 @@ pub(crate) mod cells;
 pub(crate) mod filters;
 pub(crate) mod fragments;
 pub(crate) mod interpolate;
+pub(crate) mod irradiance_cache;
 pub(crate) mod items;
 pub(crate) mod light_points;
 pub(crate) mod long_tests;

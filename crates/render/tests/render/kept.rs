@@ -142,23 +142,23 @@ fn gathered_light_of_a_file_is_used_where_all_that_it_depends_on_is_the_same() {
     let scene = prepared(&yard(30.0));
     let fresh = renderer().render_with(&mut cache, &scene, &settings, &Unobserved).unwrap();
     let saved = cache.save(&path, &scene).unwrap().unwrap();
-    assert!(saved.values > 0 && saved.sites > 0, "{saved:?}");
+    assert!(saved.values > 0 && saved.records > 0, "{saved:?}");
 
     // 1. The same: the same image, and the same file again.
     let scene = prepared(&yard(30.0));
     let mut cache = MeshCache::load(&path, &scene, Default::default()).unwrap();
-    assert_eq!(cache.sites_read(), saved.sites);
+    assert_eq!(cache.records_read(), saved.records);
     let again = renderer().render_with(&mut cache, &scene, &settings, &Unobserved).unwrap();
     assert!(Picture::new(&again).bits() == Picture::new(&fresh).bits(), "the image differs");
     let [before, rays] = [&fresh, &again].map(|frame| frame.stats.counts.gather_rays);
     assert!(2 * rays < before, "{rays} of {before}");
-    assert!(cache.refused().is_none() && cache.sites_read() == 0);
+    assert!(cache.refused().is_none() && cache.records_read() == 0);
     assert_eq!(cache.save(&second, &scene).unwrap(), Some(saved));
     assert!(std::fs::read(&path).unwrap() == std::fs::read(&second).unwrap(), "what is known is the same");
     // From elsewhere it is added to.
     let elsewhere = settings.clone().with_camera(aside(&scene, 0.3));
     same(&mut cache, &scene, &elsewhere);
-    assert!(cache.save(&second, &scene).unwrap().unwrap().sites > saved.sites);
+    assert!(cache.save(&second, &scene).unwrap().unwrap().records > saved.records);
 
     // 2. Not the same: it is dropped alone, and this is said once.
     let mut painted = yard(30.0);

@@ -17,7 +17,7 @@
 //! | 8 each | without that: the light points whose value is known, by brick |
 //! | 8 each | without a size: those that see the light, by brick |
 //! | 1 or 2 each | with a size: the rays that reached the light, of each known light point; one byte up to 255 samples |
-//! | 1 | 1 if there is [gathered light](super::gathered), which follows; 0 otherwise |
+//! | 1 | 1 if there is [gathered light](super::irradiance_cache), which follows; 0 otherwise |
 
 use std::io::{self, BufReader, Read, Write};
 
@@ -31,7 +31,7 @@ use super::super::{ColumnKey, Content, Places, Section};
 use super::fault::MeshFault;
 use super::input::Input;
 use super::output::write_difference;
-use super::{gathered, pack};
+use super::{irradiance_cache, pack};
 
 /// Bits of a brick's key.
 const KEY_BITS: u32 = 3 * AXIS_BITS;
@@ -45,7 +45,7 @@ const SMALL: u32 = 255;
 pub(super) fn write(output: &mut impl Write, Content { points, gathered }: &Content) -> io::Result<()> {
     write_points(output, points)?;
     output.write_all(&[gathered.len() as u8])?;
-    gathered.iter().try_for_each(|saved| gathered::write(output, saved))
+    gathered.iter().try_for_each(|saved| irradiance_cache::write(output, saved))
 }
 
 fn write_points(output: &mut impl Write, sections: &[Section]) -> io::Result<()> {

@@ -21,8 +21,8 @@
 mod content;
 mod fault;
 mod frame;
-mod gathered;
 mod input;
+mod irradiance_cache;
 mod output;
 mod pack;
 
@@ -45,8 +45,8 @@ pub use frame::{HEADER, MAGIC, TRAILER};
 pub struct SavedMesh {
     /// Values of light points: light points times lights.
     pub values: u64,
-    /// Sites that gathered light.
-    pub sites: u64,
+    /// Records that gathered light.
+    pub records: u64,
     /// Bytes of the file.
     pub bytes: u64,
 }
@@ -57,7 +57,7 @@ pub(super) fn save(path: &Path, scene: &PreparedScene, content: Content) -> Resu
     if content.is_empty() {
         return Ok(None);
     }
-    Ok(Some(SavedMesh { values: content.len(), sites: content.sites(), bytes: write(path, scene, &content)? }))
+    Ok(Some(SavedMesh { values: content.len(), records: content.records(), bytes: write(path, scene, &content)? }))
 }
 
 /// Writes what is known of a scene's geometry, whole or not at all.

@@ -6,10 +6,10 @@ use lightmesh_layout::In;
 use lightmesh_layout::stages::Shade;
 
 use crate::error::RenderError;
-use crate::gathered::cuda::DeviceGathered;
 use crate::gpu::film::DeviceFilm;
 use crate::gpu::rays::{DeviceVisibility, DeviceWave};
 use crate::gpu::{BLOCK, BLOCK_SIDE, Cuda, Work, blocks_for};
+use crate::stages::irradiance_cache::cuda::DeviceGathered;
 
 const KERNEL: Kernel = Kernel { module: "shade", name: "shade" };
 const GROUPS: Kernel = Kernel { module: "shade", name: "add_light_groups" };

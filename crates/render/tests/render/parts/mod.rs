@@ -9,7 +9,7 @@ mod cuda;
 mod data;
 mod device;
 mod footprint;
-mod gathered;
+mod irradiance_cache;
 mod light_mesh;
 mod material_ids;
 mod passes;

@@ -10,7 +10,7 @@ use lightmesh_render::internals::cache::{
     ColumnKey, Content, HEADER, MAGIC, Places, SavedGathered, Section, Stored, StoredAnswers, StoredColumn, TRAILER,
     decode, load, write,
 };
-use lightmesh_render::internals::gathered::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedSite};
+use lightmesh_render::internals::irradiance_cache::{SavedCells, SavedLight, SavedNode, SavedPlace, SavedRecord};
 use lightmesh_render::{Acceleration, MeshCache, MeshFault, MeshSaveError, PreparedScene, Unobserved};
 use lightmesh_scene::LightKind;
 use lightmesh_testkit::pile;
@@ -52,12 +52,13 @@ fn section(scene: &PreparedScene) -> Section {
     Section { geometry: scene.geometry.hash(), places, stored: Stored { bricks, ages: vec![0; 5], columns } }
 }
 
-/// Cells with one site and with several, some of which have a value.
+/// Cells with one record and with several, some of which have a value.
 fn gathered(scene: &PreparedScene) -> SavedGathered {
     let place = [[1.0, -2.5, 1e-7], [1.0, -2.4, 0.0], [0.0, 1.0, 0.0]];
-    let site = |(kind, has_value)| SavedSite { kind, has_value, place };
+    let record = |(kind, has_value)| SavedRecord { kind, has_value, place };
     let cells = vec![(0, 1), (5 << 51, 3), ((127 << 51) - 1, 2)];
-    let sites: Vec<SavedSite> = [(0, true), (1, false), (7, true), (11, false), (2, false), (3, true)].map(site).into();
+    let records: Vec<SavedRecord> =
+        [(0, true), (1, false), (7, true), (11, false), (2, false), (3, true)].map(record).into();
     let node = |(name, known, place): (u64, u8, SavedPlace)| {
         let mut values = [[0.0; 3]; 12];
         let is_known = usize::from(known) * usize::from(place != SavedPlace::default());
@@ -65,8 +66,8 @@ fn gathered(scene: &PreparedScene) -> SavedGathered {
         SavedNode { name, place, covered: name != 3, known, values }
     };
     let light = SavedLight {
-        fine: SavedCells { cells: cells.clone(), sites: sites.clone(), values: vec![words(1); 3] },
-        far: SavedCells { cells: cells[..1].into(), sites: sites[..1].into(), values: vec![words(2)] },
+        fine: SavedCells { cells: cells.clone(), records: records.clone(), values: vec![words(1); 3] },
+        coarse: SavedCells { cells: cells[..1].into(), records: records[..1].into(), values: vec![words(2)] },
         nodes: [(3, 1, place), (4 << 55, 12, Default::default()), ((127 << 57) - 1, 12, place)].map(node).into(),
     };
     SavedGathered { geometry: scene.geometry.hash(), sources: 0x1234_5678_9abc_def0, light }
@@ -133,10 +134,10 @@ fn what_is_loaded_is_what_was_saved() {
     assert_eq!(load(&path, &scene, Budget::default()).unwrap(), all(&scene));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left next to it");
     let cache = MeshCache::load(&path, &scene, Budget::default()).unwrap();
-    assert_eq!((cache.len(), cache.sites_read()), (8 * 68, 4));
+    assert_eq!((cache.len(), cache.records_read()), (8 * 68, 4));
     // What was not asked for stays.
     let again = cache.save(&path, &scene).unwrap().unwrap();
-    assert_eq!((again.values, again.sites, again.bytes), (8 * 68, 4, bytes.len() as u64));
+    assert_eq!((again.values, again.records, again.bytes), (8 * 68, 4, bytes.len() as u64));
     assert_eq!(std::fs::read(&path).unwrap(), bytes);
     // Each without the other.
     let light = Content { gathered: vec![gathered(&scene)], ..Content::default() };
@@ -145,7 +146,7 @@ fn what_is_loaded_is_what_was_saved() {
     let cache = MeshCache::load(&path, &scene, Budget::default()).unwrap();
     assert!(!cache.is_empty() && cache.memory() > 2000);
     assert_eq!(cache.len(), 0);
-    assert_eq!(cache.save(&path, &scene).unwrap().map(|saved| (saved.values, saved.sites)), Some((0, 4)));
+    assert_eq!(cache.save(&path, &scene).unwrap().map(|saved| (saved.values, saved.records)), Some((0, 4)));
     let points = Content { points: vec![section(&scene)], ..Content::default() };
     write(&path, &scene, &points).unwrap();
     assert_eq!(load(&path, &scene, Budget::default()).unwrap(), points);
@@ -318,7 +319,7 @@ fn gathered_light_that_cannot_be_is_refused() {
 fn gathered_light_takes_no_more_memory_than_there_is() {
     let scene = scene(0.0);
     let (_folder, _, file) = saved(&scene);
-    // Many cells; many sites; many nodes.
+    // Many cells; many records; many nodes.
     let cells = [&(1u64 << 26).to_le_bytes()[..], &[1; 64 << 20]].concat();
     assert_too_large(&with_content(&file, &of_gathered(&[&cells])), &scene);
     let many = 1u64 << 20;
