@@ -268,7 +268,7 @@ constants! {
     THIN_DOWN: u32 = 0x91e1_0da5;
     /// From depth to depth: the golden ratio.
     THIN_DEEPER: u32 = 0x9e37_79b9;
-    /// Of surfaces without diffuse reflection it is asked what panes leave of a light if its highlight is at least that much of a pixel.
+    /// Of surfaces without diffuse reflection it is asked what transmissive surfaces leave of a light if its highlight is at least that much of a pixel.
     MIN_SHOWN: f32 = 1.0 / 262_144.0;
     /// So many hits of a shadow ray are found at once.
     HITS_AT_ONCE: u32 = 16;
@@ -277,8 +277,8 @@ constants! {
     /// Where all surfaces are opaque, a ray goes on at a surface, mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
     /// no code of an image.
     MIN_ONWARD: f32 = 1.0 / 4096.0;
-    /// Surface points of which a small share reaches the pixel follow fewer samples of lights through panes: levels of that.
-    FILTER_LEVELS: u32 = 3;
+    /// Surface points of which a small share reaches the pixel follow fewer samples of lights through transmissive surfaces: levels of that.
+    TRANSMITTANCE_LEVELS: u32 = 3;
     /// Each level takes this part of the samples of the one before, where at most this part of its share reaches the pixel.
     PART_OF_LEVEL: f32 = 1.0 / 4.0;
     /// So many of its bits.

@@ -96,8 +96,8 @@ records! {
         end_light: u32,
     }
 
-    /// `filters`: one thread per ray.
-    Filters {
+    /// `transmittance`: one thread per ray.
+    Transmittance {
         /// The scene, of which only what is opaque hides.
         scene: Scene,
         /// What kernels that test samples need; of its scene only what lets light through is hit.

@@ -113,7 +113,8 @@ pub mod passes {
             let Chosen { technique, scene, view } = self;
             let mut picture = Picture::planned(plan, [0..plan.size[1], 0..plan.size[1]]);
             let runner = StageRunner::new(&Cpu, context, None);
-            let rows = Passes { runner, scene, see_through: None, technique, view, plan }.render(&mut picture)?;
+            let rows =
+                Passes { runner, scene, transmission_parts: None, technique, view, plan }.render(&mut picture)?;
             Ok((picture, rows))
         }
 

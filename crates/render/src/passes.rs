@@ -14,7 +14,7 @@ use crate::data::picture::Picture;
 use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::plan::Plan;
-use crate::prepared::SeeThrough;
+use crate::prepared::TransmissionParts;
 use crate::probes::GivenPoints;
 use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
@@ -40,7 +40,7 @@ impl<B: Backend> Baking<'_, B> {
     /// Finds what each probe sees of each light. Also returns how many rows of probes were processed at once.
     pub(crate) fn bake(&self, points: &GivenPoints) -> Result<(Visibility, u32), RenderError> {
         let Baking { runner, scene, technique, plan } = self;
-        let stages = technique.stages().len() as u64 + u64::from(plan.lets_through);
+        let stages = technique.stages().len() as u64 + u64::from(plan.is_transmissive);
         runner.context.work.expect(points.len() as u64 * stages);
         let at_once = runner.or_evict(|backend| backend.rows_at_once(scene, plan))?;
         let mut all = Visibility::dark(0..plan.lights.lights, points.len());
@@ -58,7 +58,7 @@ impl<B: Backend> Baking<'_, B> {
             };
             let mut seen = None;
             let light = Light { runner, technique, plan };
-            light.each_group(&wave, runner.backend.see_through(&scene).as_ref(), &mut |visibility| {
+            light.each_group(&wave, runner.backend.transmission_parts(&scene).as_ref(), &mut |visibility| {
                 seen = Some(visibility);
                 Ok(())
             })?;
@@ -82,23 +82,25 @@ struct Light<'a, 'runner, B: Backend> {
 }
 
 impl<B: Backend> Light<'_, '_, B> {
-    /// Hands what each surface point of a wave sees of each light to `sink`, group by group of lights. Of a scene that is `see_through` only
-    /// what is opaque hides, and the rest filters.
+    /// Hands what each surface point of a wave sees of each light to `sink`, group by group of lights. Of a scene with `transmission_parts` only
+    /// what is opaque hides, and the rest transmits.
     fn each_group(
         &self,
         wave: &WaveOf<B>,
-        see_through: Option<&SeeThrough<B::Scene>>,
+        transmission_parts: Option<&TransmissionParts<B::Scene>>,
         sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
         let Light { runner, technique, plan } = self;
-        let Some(SeeThrough { blockers, panes, .. }) = see_through else {
+        let Some(TransmissionParts { blockers, transmissive, .. }) = transmission_parts else {
             return technique.visibility(runner, wave, plan.lights, sink);
         };
         let wave = WaveOf::<B> { scene: blockers, ..*wave };
         let n = runner.backend.ray_count(wave.rays);
         let target = if technique.targets_centers() { ShadowTarget::Center } else { wave.shadow_target() };
         technique.visibility(runner, &wave, plan.lights, &mut |visibility| {
-            sink(runner.stage(Stage::Filters, [n; 2], |backend| backend.filters(&wave, panes, &target, visibility))?)
+            sink(runner.stage(Stage::Transmittance, [n; 2], |backend| {
+                backend.transmittance(&wave, transmissive, &target, visibility)
+            })?)
         })
     }
 }
@@ -126,7 +128,7 @@ pub(crate) struct Passes<'a, B: Backend> {
     pub(crate) runner: StageRunner<'a, B>,
     pub(crate) scene: &'a B::Scene,
     /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
-    pub(crate) see_through: Option<SeeThrough<B::Scene>>,
+    pub(crate) transmission_parts: Option<TransmissionParts<B::Scene>>,
     pub(crate) technique: &'a Technique,
     pub(crate) view: &'a View,
     pub(crate) plan: &'a Plan,
@@ -214,7 +216,7 @@ impl<B: Backend> Passes<'_, B> {
             }
             let wave = self.wave(&rays, &hits, parts);
             self.light(&wave, film)?;
-            if depths.last || depth >= plan.bounces && !plan.lets_through {
+            if depths.last || depth >= plan.bounces && !plan.is_transmissive {
                 break;
             }
             rays = runner.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
@@ -231,14 +233,14 @@ impl<B: Backend> Passes<'_, B> {
     fn light(&self, wave: &WaveOf<B>, film: &mut B::Film) -> Result<(), RenderError> {
         let Passes { runner, technique, plan, .. } = self;
         let n = runner.backend.ray_count(wave.rays);
-        let solid = self.see_through.as_ref().map_or(wave.scene, |parts| &parts.solid);
+        let gi_occluders = self.transmission_parts.as_ref().map_or(wave.scene, |parts| &parts.gi_occluders);
         let gather = |how: &Gathering| {
-            let wave = WaveOf::<B> { scene: solid, ..*wave };
+            let wave = WaveOf::<B> { scene: gi_occluders, ..*wave };
             runner.stage(Stage::Gather, [n; 2], |backend| runner.with_gathered(|kept| backend.gather(&wave, how, kept)))
         };
         let gathered = plan.gathering.as_ref().map(gather).transpose()?;
         let light = Light { runner, technique, plan };
-        light.each_group(wave, self.see_through.as_ref(), &mut |visibility| {
+        light.each_group(wave, self.transmission_parts.as_ref(), &mut |visibility| {
             runner.stage(Stage::Shade, [n; 2], |backend| backend.shade(wave, &visibility, gathered.as_ref(), film))
         })
     }
@@ -307,7 +309,7 @@ impl<B: Backend> Passes<'_, B> {
 
     /// Those of the stage that finds the rays that go on.
     fn pieces_of_mirrors(&self, depth: u32, rays: u64) -> u64 {
-        rays * u64::from(depth < self.plan.bounces || self.plan.lets_through)
+        rays * u64::from(depth < self.plan.bounces || self.plan.is_transmissive)
     }
 
     /// Those of the stages that find what its surface points reflect.
@@ -315,8 +317,8 @@ impl<B: Backend> Passes<'_, B> {
         // The technique's stages, gathering, shading; long tests and shading again for each further group.
         let further = self.plan.lights.iter().len() as u64 - 1;
         let gathering = u64::from(self.plan.gathering.is_some());
-        let filters = u64::from(self.plan.lets_through) * (1 + further);
-        rays * (self.technique.stages().len() as u64 + gathering + filters + 1 + 2 * further)
+        let transmittance = u64::from(self.plan.is_transmissive) * (1 + further);
+        rays * (self.technique.stages().len() as u64 + gathering + transmittance + 1 + 2 * further)
     }
 }
 

@@ -26,7 +26,7 @@ pub struct Plan {
     /// Depth of mirror recursion.
     pub bounces: u32,
     /// Whether rays may go through surfaces.
-    pub lets_through: bool,
+    pub is_transmissive: bool,
     /// In how many directions mirrors reflect a ray, at most.
     pub directions: u32,
     /// Whether the share of a pixel's samples that see anything is kept.
@@ -64,7 +64,7 @@ impl Plan {
     /// The rays of a pixel in a wave, at most unless surfaces both mirror and let rays through several times.
     pub(crate) fn rays_per_pixel(&self) -> u64 {
         let samples = self.antialiasing.as_ref().map_or(1, |all| u64::from(all.at_once()));
-        samples * (u64::from(self.directions) + u64::from(self.lets_through))
+        samples * (u64::from(self.directions) + u64::from(self.is_transmissive))
     }
 
     /// Bytes of the samples of a pixel: a hit and an owner each, the hit of its centre once more, and its state.

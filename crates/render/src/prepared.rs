@@ -45,7 +45,7 @@ pub struct PreparedGeometry {
     /// The smaller levels of textures, by number; empty if no texture is seen.
     pub(crate) mip_levels: Arc<AllLevels>,
     /// The same triangles for shadow rays, if some are not opaque.
-    pub(crate) see_through: Option<SeeThrough<Arc<PreparedGeometry>>>,
+    pub(crate) transmission_parts: Option<TransmissionParts<Arc<PreparedGeometry>>>,
     /// What moved since it was prepared before.
     pub(crate) deformation: Option<Deformation>,
     /// Hash of which triangles the structure holds; 0: all.
@@ -71,13 +71,13 @@ pub(crate) struct Deformation {
 
 /// A scene, or its geometry, taken apart for shadow rays: rays hit the same triangles as in the whole, but only some of these hide anything.
 #[derive(Clone, Debug)]
-pub struct SeeThrough<T> {
+pub struct TransmissionParts<T> {
     /// Only what is opaque hides.
     pub blockers: T,
     /// Only what lets light through is hit.
-    pub panes: T,
+    pub transmissive: T,
     /// For gathered light: what is at least half opaque is opaque, and what is less is not there.
-    pub solid: T,
+    pub gi_occluders: T,
 }
 
 impl PreparedGeometry {
@@ -147,8 +147,8 @@ impl PreparedGeometry {
             Some(Deformation { before: Arc::downgrade(before), boxes: Arc::clone(&boxes) })
         };
         prepared.deformation = deformation(self);
-        if let (Some(parts), Some(before)) = (&mut prepared.see_through, &self.see_through) {
-            let pairs = [(&mut parts.blockers, &before.blockers), (&mut parts.panes, &before.panes)];
+        if let (Some(parts), Some(before)) = (&mut prepared.transmission_parts, &self.transmission_parts) {
+            let pairs = [(&mut parts.blockers, &before.blockers), (&mut parts.transmissive, &before.transmissive)];
             for (part, before) in pairs {
                 Arc::get_mut(part).expect("nobody else has it yet").deformation = deformation(before);
             }
@@ -177,7 +177,7 @@ impl PreparedGeometry {
     }
 
     /// The same where what is at least half opaque is opaque, and the rest is none.
-    fn solid(&self) -> PreparedGeometry {
+    fn gi_occluders(&self) -> PreparedGeometry {
         let coverage = self.coverage.halved();
         self.over(self.accelerator.covered_by(&coverage), coverage)
     }
@@ -191,7 +191,7 @@ impl PreparedGeometry {
             coverage,
             materials: self.materials.clone(),
             mip_levels: Arc::clone(&self.mip_levels),
-            see_through: None,
+            transmission_parts: None,
             deformation: None,
             held: 0,
             hash: OnceLock::new(),
@@ -231,7 +231,7 @@ impl PreparedGeometry {
     /// opacities.
     pub fn memory(&self) -> usize {
         let levels = self.mip_levels.memory();
-        let parts = self.see_through.iter().flat_map(|parts| [&parts.blockers, &parts.panes]);
+        let parts = self.transmission_parts.iter().flat_map(|parts| [&parts.blockers, &parts.transmissive]);
         let parts: usize = parts.map(|part| part.accelerator.memory()).sum();
         size_of_val(self.triangles.stored()) + self.accelerator.memory() + self.coverage.memory() + levels + parts
     }
@@ -252,7 +252,10 @@ impl PreparedGeometry {
 
     /// This, and the parts that it is taken into for shadow rays.
     pub(crate) fn all_parts(self: &Arc<PreparedGeometry>) -> Vec<&Arc<PreparedGeometry>> {
-        let parts = self.see_through.iter().flat_map(|parts| [&parts.blockers, &parts.panes, &parts.solid]);
+        let parts = self
+            .transmission_parts
+            .iter()
+            .flat_map(|parts| [&parts.blockers, &parts.transmissive, &parts.gi_occluders]);
         std::iter::once(self).chain(parts).collect()
     }
 
@@ -266,7 +269,7 @@ impl PreparedGeometry {
 fn check_memory(geometry: &Geometry, budget: Budget) -> Result<(), RenderError> {
     let triangles = geometry.mesh.triangles.len();
     let cut_out = geometry.materials.iter().any(|material| material.opacity.is_some());
-    let parts = if geometry.materials.iter().any(Material::lets_through) { 3 } else { 1 };
+    let parts = if geometry.materials.iter().any(Material::is_transmissive) { 3 } else { 1 };
     let bytes = parts * BYTES_TO_BUILD + if cut_out { coverage::BYTES_TO_BUILD } else { 0 };
     budget.check(triangles as u64 * bytes).map_err(|short| RenderError::BuildMemory { triangles, short })
 }
@@ -308,7 +311,7 @@ impl Structures<'_> {
             coverage,
             materials: MaterialIds::new(geometry),
             mip_levels,
-            see_through: None,
+            transmission_parts: None,
             deformation: None,
             held: 0,
             hash: OnceLock::new(),
@@ -317,15 +320,15 @@ impl Structures<'_> {
             center,
             sun_distance,
         };
-        if geometry.materials.iter().any(Material::lets_through) {
-            let lets_through = |triangle: &Triangle| {
+        if geometry.materials.iter().any(Material::is_transmissive) {
+            let is_transmissive = |triangle: &Triangle| {
                 let material = geometry.mesh.materials[triangle.index() as usize];
-                triangle.cut() != 0 && geometry.materials[material as usize].lets_through()
+                triangle.cut() != 0 && geometry.materials[material as usize].is_transmissive()
             };
-            prepared.see_through = Some(SeeThrough {
-                blockers: Arc::new(prepared.part(&geometry.mesh, |triangle| !lets_through(triangle), budget)?),
-                panes: Arc::new(prepared.part(&geometry.mesh, lets_through, budget)?),
-                solid: Arc::new(prepared.solid()),
+            prepared.transmission_parts = Some(TransmissionParts {
+                blockers: Arc::new(prepared.part(&geometry.mesh, |triangle| !is_transmissive(triangle), budget)?),
+                transmissive: Arc::new(prepared.part(&geometry.mesh, is_transmissive, budget)?),
+                gi_occluders: Arc::new(prepared.gi_occluders()),
             });
         }
         Ok(prepared)
@@ -443,13 +446,17 @@ impl PreparedScene {
     }
 
     /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
-    pub(crate) fn see_through(&self) -> Option<SeeThrough<PreparedScene>> {
-        let SeeThrough { blockers, panes, solid } = self.geometry.see_through.as_ref()?;
+    pub(crate) fn transmission_parts(&self) -> Option<TransmissionParts<PreparedScene>> {
+        let TransmissionParts { blockers, transmissive, gi_occluders } = self.geometry.transmission_parts.as_ref()?;
         let part = |geometry: &Arc<PreparedGeometry>| PreparedScene {
             scene: self.scene.clone(),
             geometry: Arc::clone(geometry),
         };
-        Some(SeeThrough { blockers: part(blockers), panes: part(panes), solid: part(solid) })
+        Some(TransmissionParts {
+            blockers: part(blockers),
+            transmissive: part(transmissive),
+            gi_occluders: part(gi_occluders),
+        })
     }
 
     /// Whether anything only shows the shadows on it.
@@ -464,8 +471,8 @@ impl PreparedScene {
     }
 
     /// Whether rays may go through surfaces.
-    pub(crate) fn lets_through(&self) -> bool {
-        self.scene.geometry.materials.iter().any(Material::lets_through)
+    pub(crate) fn is_transmissive(&self) -> bool {
+        self.scene.geometry.materials.iter().any(Material::is_transmissive)
     }
 
     /// Whether lights stand for what lamps emit.

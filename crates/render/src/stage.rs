@@ -1,6 +1,7 @@
 //! The stages of a render: one table for clocks, progress and statistics.
 
-/// Defines [`Stage`] and [`Seconds`]. To add a stage, add a line.
+/// Defines [`Stage`] and [`Seconds`]. To add a stage, add a line. What stands after `=` is the name in statistics, on which scripts rely: it stays if
+/// the stage gets another.
 macro_rules! stages {
     ($($(#[$doc:meta])* $variant:ident = $name:ident,)*) => {
         /// The stages of a render, in order.
@@ -88,7 +89,7 @@ stages! {
     /// Which samples of lights small groups of surface points see, by what stands between.
     OccluderLists = occluder_lists,
     /// What surfaces that are not opaque leave of the lights.
-    Filters = filters,
+    Transmittance = filters,
     /// What surfaces receive from their surroundings and from each other.
     Gather = gather,
     /// Formula (1).

@@ -237,7 +237,7 @@
 #define THIN_DOWN 0x91e10da5u
 // From depth to depth: the golden ratio.
 #define THIN_DEEPER 0x9e3779b9u
-// Of surfaces without diffuse reflection it is asked what panes leave of a light if its highlight is at least that much of a pixel.
+// Of surfaces without diffuse reflection it is asked what transmissive surfaces leave of a light if its highlight is at least that much of a pixel.
 #define MIN_SHOWN 0x1p-18f
 // So many hits of a shadow ray are found at once.
 #define HITS_AT_ONCE 16u
@@ -246,8 +246,8 @@
 // Where all surfaces are opaque, a ray goes on at a surface, mirrored, if at least this share of the radiance that it sees reaches the pixel: less changes
 // no code of an image.
 #define MIN_ONWARD 0x1p-12f
-// Surface points of which a small share reaches the pixel follow fewer samples of lights through panes: levels of that.
-#define FILTER_LEVELS 3u
+// Surface points of which a small share reaches the pixel follow fewer samples of lights through transmissive surfaces: levels of that.
+#define TRANSMITTANCE_LEVELS 3u
 // Each level takes this part of the samples of the one before, where at most this part of its share reaches the pixel.
 #define PART_OF_LEVEL 0x1p-2f
 // So many of its bits.
@@ -403,18 +403,18 @@
 #define MAX_LEVEL 58
 // Kinds of surfaces in a cell, by their normal: the largest component of three, its sign, and whether it is the triangle's front.
 #define SURFACE_KINDS 12u
-// How far sites move away from edges, in cells.
+// How far records move away from edges, in cells.
 #define RECORD_INWARDS 0x1p-4f
-// Sites lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
+// Records lie in the cube around their cell's middle with this half edge, in cells: half a cell, and more since they move inwards from edges.
 #define RECORD_MARGIN 0x1.4p-1f
-// A site is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
-// the ground below a floor would take the cell's only site from the floor.
+// A record is open if nothing is above it within this distance, in cells: as far as layers in a cell may be from each other. With half of it,
+// the ground below a floor would take the cell's only record from the floor.
 #define RECORD_OPEN 0x1p0f
-// The same for sites that rays of others hit, of which smaller cells may have better ones.
+// The same for records that rays of others hit, of which smaller cells may have better ones.
 #define NODE_OPEN 0x1p-2f
 // How many points of a kind are looked at for an open one.
 #define RECORD_CANDIDATES 4u
-// The distance within which sites count, in cells.
+// The distance within which records count, in cells.
 #define RECORD_RADIUS 0x1.8p0f
 // The cells around one, and itself, in which they are: the ball around a place ends two cells away, at most.
 #define CELLS_AROUND 125u
@@ -422,10 +422,10 @@
 #define RECORD_THICKNESS 0x1.8p-1f
 // The cosine of the angle between normals beyond which they do not.
 #define RECORD_COSINE 0x1.8p-1f
-// Sites that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
+// Records that are nearly in line do not tell how light changes beside it: the product of the variances, relative to the square of their
 // sum.
 #define MIN_SPREAD 0x1.47ae14p-6f
-// Segments to sites begin and end above the surface by this share of their length, so that gentle curves do not hide them.
+// Segments to records begin and end above the surface by this share of their length, so that gentle curves do not hide them.
 #define RECORD_RAISED 0x1.333334p-3f
 // They rise no farther than this share of the way to what is above.
 #define RECORD_STEP 0x1p-1f
@@ -443,20 +443,20 @@
 #define BLEND_FROM 0x1.cp0f
 // Near is what is not farther than this many coarse cells.
 #define NEAR_CELLS 0x1p1f
-// How far near rays reach, relative to what coarse sites leave out as near. What is near to these may be farther away here, but only
+// How far near rays reach, relative to what coarse records leave out as near. What is near to these may be farther away here, but only
 // from some: with 1, light is too bright before walls, with 2 too dark.
 #define NEAR_REACH 0x1.4p0f
-// Sites cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
+// Records cast more rays if the luminance that the first ones see deviates by more than this from its mean, relative to it.
 #define EVEN 0x1.ccccccp-2f
-// This share of a site's second rays goes where its first ones see different things; the rest goes everywhere.
+// This share of a record's second rays goes where its first ones see different things; the rest goes everywhere.
 #define GUIDED 0x1p-1f
 // First rays along each side of a block of directions.
 #define GUIDE_BLOCK 2u
 // How many rays beside a block tell how different what is seen in it is.
 #define GUIDE_RING 1u
-// A site's first ray counts as much as this many of its second ones, which go where they are needed.
+// A record's first ray counts as much as this many of its second ones, which go where they are needed.
 #define FIRST_COUNT 0x1p-2f
-// Near rays see a site's surroundings as crowded where the mean inverse distance of what they hit, times the size of the coarse cells, is more:
+// Near rays see a record's surroundings as crowded where the mean inverse distance of what they hit, times the size of the coarse cells, is more:
 // then it asks coarse cells of half the size.
 #define CROWDED 0x1p-1f
 // To ask cells that are smaller once more, that must be more than this many times as much.
@@ -469,24 +469,24 @@
 #define SKY_CONE 0x1p-2f
 // What a ray hits is asked for light in a cell of this share of the distance.
 #define BOUNCE_SIZE 0x1.99999ap-3f
-// If a site is hidden or covered, cells that are smaller by up to this many levels are asked, one after the other.
+// If a record is hidden or covered, cells that are smaller by up to this many levels are asked, one after the other.
 #define BOUNCE_FINER 2
-// The rays of a site that other rays hit form a square with this side.
+// The rays of a record that other rays hit form a square with this side.
 #define BOUNCE_SIDE 8u
-// What is so many times brighter than the mean of what a fan sees asks the smallest of these at once: around it, light changes fast.
+// What is so many times brighter than the mean of what a hemisphere of rays sees asks the smallest of these at once: around it, light changes fast.
 #define BRIGHT 0x1p3f
 // Where there are more lights, what a ray hits asks about so many of them, chosen by what they may give.
 #define CHOSEN_LIGHTS 4u
 // How often light is reflected before it reaches what a gather ray hits, at most, with the first time by a light's. After so many, a share of
 // the twelfth power of what surfaces reflect is missing: 2 % in a closed room that reflects 0.7.
 #define ORDERS 12u
-// Where sites that rays hit are looked for first, in cells around the middle of theirs; then twice as far, up to a whole cell.
+// Where records that rays hit are looked for first, in cells around the middle of theirs; then twice as far, up to a whole cell.
 #define NODE_REACH 0x1p-3f
 // A table in which a name is not found after this many places is too full.
 #define NAME_PROBES 1024u
 // Added to the number of names of such a table.
 #define FULL_TABLE 0x80000000u
-// No name, site or node.
+// No name, record or node.
 #define NO_NUMBER 0xffffffffu
 
 #if defined(__CUDACC_RTC__)
@@ -1774,7 +1774,7 @@ static_assert(PLACE_OF(Shadows, set_count) == 2236, "place of Shadows::set_count
 static_assert(PLACE_OF(Shadows, first_light) == 2240, "place of Shadows::first_light");
 static_assert(PLACE_OF(Shadows, end_light) == 2244, "place of Shadows::end_light");
 
-struct alignas(8) Filters {
+struct alignas(8) Transmittance {
     Scene scene;
     Shadows shadows;
     Triangles triangles;
@@ -1785,16 +1785,16 @@ struct alignas(8) Filters {
     unsigned parts;
     unsigned spare;
 };
-static_assert(sizeof(Filters) == 2984, "size of Filters");
-static_assert(PLACE_OF(Filters, scene) == 0, "place of Filters::scene");
-static_assert(PLACE_OF(Filters, shadows) == 680, "place of Filters::shadows");
-static_assert(PLACE_OF(Filters, triangles) == 2928, "place of Filters::triangles");
-static_assert(PLACE_OF(Filters, normals) == 2952, "place of Filters::normals");
-static_assert(PLACE_OF(Filters, passed) == 2960, "place of Filters::passed");
-static_assert(PLACE_OF(Filters, middle) == 2968, "place of Filters::middle");
-static_assert(PLACE_OF(Filters, level) == 2972, "place of Filters::level");
-static_assert(PLACE_OF(Filters, parts) == 2976, "place of Filters::parts");
-static_assert(PLACE_OF(Filters, spare) == 2980, "place of Filters::spare");
+static_assert(sizeof(Transmittance) == 2984, "size of Transmittance");
+static_assert(PLACE_OF(Transmittance, scene) == 0, "place of Transmittance::scene");
+static_assert(PLACE_OF(Transmittance, shadows) == 680, "place of Transmittance::shadows");
+static_assert(PLACE_OF(Transmittance, triangles) == 2928, "place of Transmittance::triangles");
+static_assert(PLACE_OF(Transmittance, normals) == 2952, "place of Transmittance::normals");
+static_assert(PLACE_OF(Transmittance, passed) == 2960, "place of Transmittance::passed");
+static_assert(PLACE_OF(Transmittance, middle) == 2968, "place of Transmittance::middle");
+static_assert(PLACE_OF(Transmittance, level) == 2972, "place of Transmittance::level");
+static_assert(PLACE_OF(Transmittance, parts) == 2976, "place of Transmittance::parts");
+static_assert(PLACE_OF(Transmittance, spare) == 2980, "place of Transmittance::spare");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;

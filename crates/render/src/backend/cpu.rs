@@ -22,7 +22,7 @@ use crate::device::cpu_name;
 use crate::error::RenderError;
 use crate::light_mesh::{LightMesh, UsedPoints};
 use crate::plan::Plan;
-use crate::prepared::{PreparedScene, SeeThrough};
+use crate::prepared::{PreparedScene, TransmissionParts};
 use crate::probes::Probes;
 use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
@@ -83,8 +83,8 @@ impl Backend for Cpu {
         Ok(scene.clone())
     }
 
-    fn see_through(&self, scene: &PreparedScene) -> Option<SeeThrough<PreparedScene>> {
-        scene.see_through()
+    fn transmission_parts(&self, scene: &PreparedScene) -> Option<TransmissionParts<PreparedScene>> {
+        scene.transmission_parts()
     }
 
     fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError> {

@@ -22,7 +22,7 @@ use crate::error::RenderError;
 use crate::gpu;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
-use crate::prepared::{PreparedScene, SeeThrough};
+use crate::prepared::{PreparedScene, TransmissionParts};
 use crate::probes::Probes;
 use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
@@ -85,8 +85,8 @@ impl<R: Runtime> Backend for Cuda<R> {
         self.device_scene(context, scene)
     }
 
-    fn see_through(&self, scene: &DeviceScene<R>) -> Option<SeeThrough<DeviceScene<R>>> {
-        scene.see_through()
+    fn transmission_parts(&self, scene: &DeviceScene<R>) -> Option<TransmissionParts<DeviceScene<R>>> {
+        scene.transmission_parts()
     }
 
     fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError> {

@@ -32,7 +32,7 @@ use crate::data::visibility::Visibility;
 use crate::error::RenderError;
 use crate::light_mesh::LightMesh;
 use crate::plan::Plan;
-use crate::prepared::{PreparedScene, SeeThrough};
+use crate::prepared::{PreparedScene, TransmissionParts};
 use crate::probes::Probes;
 use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
@@ -122,7 +122,7 @@ pub trait Backend: Sized {
     fn check_host_memory(&self, plan: &Plan) -> Result<(), RenderError>;
 
     /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
-    fn see_through(&self, scene: &Self::Scene) -> Option<SeeThrough<Self::Scene>>;
+    fn transmission_parts(&self, scene: &Self::Scene) -> Option<TransmissionParts<Self::Scene>>;
 
     /// Bytes of its memory that an image, and what is kept for later ones, may take; `None`: unknown.
     fn left(&self, plan: &Plan) -> Option<u64>;

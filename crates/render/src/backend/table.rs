@@ -47,8 +47,8 @@ macro_rules! stage_table {
             items(wave: &WaveOf<Self>) -> Self::Items;
             /// Finds the same as `area_shadows`, by what stands between an item and the light.
             occluder_lists(wave: &WaveOf<Self>, items: &Self::Items, target: &ShadowTarget) -> Self::Visibility;
-            /// Multiplies visibility by the transmittance of the surfaces of `panes` that are not opaque.
-            filters(wave: &WaveOf<Self>, panes: &Self::Scene, target: &ShadowTarget, visibility: Self::Visibility) -> Self::Visibility;
+            /// Multiplies visibility by the transmittance of the surfaces of `transmissive`.
+            transmittance(wave: &WaveOf<Self>, transmissive: &Self::Scene, target: &ShadowTarget, visibility: Self::Visibility) -> Self::Visibility;
             /// Adds the radiance of each ray to its pixel. Formula (1).
             shade(
                 wave: &WaveOf<Self>,

@@ -159,7 +159,7 @@ fn material_record(geometry: &Geometry, material: &lightmesh_scene::Material) ->
     let (catcher, lamp) = (u32::from(material.catcher), u32::from(material.lamp));
     let shininess = material.shininess;
     let mut record = Material { shininess, catcher, lamp, ..bytemuck::Zeroable::zeroed() };
-    if material.lets_through() {
+    if material.is_transmissive() {
         record.blends = 1;
         record.transmittance = vec3(material.opacity.and_then(|opacity| opacity.filter()).unwrap_or_default());
     }

@@ -6,7 +6,7 @@ use lightmesh_kernels::{Buffer, Runtime};
 use lightmesh_layout::Structure;
 use lightmesh_layout::scene::{EnvironmentLevel, Scene, Texture};
 
-use crate::prepared::SeeThrough;
+use crate::prepared::TransmissionParts;
 
 /// A template on a device.
 pub(super) struct DeviceTemplate<R: Runtime> {
@@ -21,7 +21,7 @@ pub(crate) struct DeviceGeometry<R: Runtime> {
     /// The part of the record that describes geometry.
     pub(super) record: Scene,
     /// The same with the structures for shadow rays, if some surfaces are not opaque.
-    pub(super) see_through: Option<SeeThrough<Scene>>,
+    pub(super) transmission_parts: Option<TransmissionParts<Scene>>,
     pub(super) structure: Structure,
     /// What the record points to.
     #[expect(dead_code, reason = "only kept")]

@@ -18,7 +18,7 @@ use lightmesh_trace::accel::{self, AcceleratorKind};
 use super::device::Cuda;
 use super::resident::{Buffers, DeviceEnvironment, DeviceGeometry, DeviceTextures};
 use crate::error::RenderError;
-use crate::prepared::{PreparedGeometry, PreparedScene, SeeThrough};
+use crate::prepared::{PreparedGeometry, PreparedScene, TransmissionParts};
 use crate::render_context::RenderContext;
 use crate::sampling::disk_radius;
 use crate::settings::Acceleration;
@@ -64,8 +64,8 @@ impl<R: Runtime> DeviceScene<R> {
     }
 
     /// The scene taken apart for shadow rays, if some of its surfaces are not opaque.
-    pub(crate) fn see_through(&self) -> Option<SeeThrough<DeviceScene<R>>> {
-        let (on_host, parts) = (self.host.see_through()?, self._geometry.see_through.as_ref()?);
+    pub(crate) fn transmission_parts(&self) -> Option<TransmissionParts<DeviceScene<R>>> {
+        let (on_host, parts) = (self.host.transmission_parts()?, self._geometry.transmission_parts.as_ref()?);
         let part = |part: &Scene, host: PreparedScene| {
             let Scene { bvh, grid, brute_force, instanced, coverage, .. } = *part;
             DeviceScene {
@@ -74,10 +74,10 @@ impl<R: Runtime> DeviceScene<R> {
                 ..self.clone()
             }
         };
-        Some(SeeThrough {
+        Some(TransmissionParts {
             blockers: part(&parts.blockers, on_host.blockers),
-            panes: part(&parts.panes, on_host.panes),
-            solid: part(&parts.solid, on_host.solid),
+            transmissive: part(&parts.transmissive, on_host.transmissive),
+            gi_occluders: part(&parts.gi_occluders, on_host.gi_occluders),
         })
     }
 }
@@ -306,21 +306,23 @@ impl<R: Runtime> Upload<'_, R> {
         record.object_starts = self.array("runs of objects", starts)?;
         record.objects = self.array("objects", objects)?;
         record.object_runs = starts.len() as u32;
-        let solid = prepared.see_through.as_ref().map(|parts| &parts.solid.coverage);
-        let [coverage, halved] = self.coverage(&prepared.coverage, solid)?;
+        let gi_occluders = prepared.transmission_parts.as_ref().map(|parts| &parts.gi_occluders.coverage);
+        let [coverage, halved] = self.coverage(&prepared.coverage, gi_occluders)?;
         record.coverage = coverage;
         let structure = self.structure(prepared, coverage, &mut record)?;
         let mut part = |prepared: &PreparedGeometry| {
             let mut record = record;
             self.structure(prepared, coverage, &mut record).map(|_| record)
         };
-        let see_through = match &prepared.see_through {
-            Some(SeeThrough { blockers, panes, .. }) => {
-                Some(SeeThrough { blockers: part(blockers)?, panes: part(panes)?, solid: covered_by(halved, record) })
-            }
+        let transmission_parts = match &prepared.transmission_parts {
+            Some(TransmissionParts { blockers, transmissive, .. }) => Some(TransmissionParts {
+                blockers: part(blockers)?,
+                transmissive: part(transmissive)?,
+                gi_occluders: covered_by(halved, record),
+            }),
             None => None,
         };
-        Ok(DeviceGeometry { record, see_through, structure, buffers: self.buffers, textures })
+        Ok(DeviceGeometry { record, transmission_parts, structure, buffers: self.buffers, textures })
     }
 
     /// Adds the structure over a geometry to the record of a scene.

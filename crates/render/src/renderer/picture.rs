@@ -99,8 +99,8 @@ fn render<B: Backend>(
     if let Some(sources) = &sources {
         runner.lookup_gathered(scene, sources);
     }
-    let see_through = backend.see_through(&on_device);
-    let passes = Passes { runner, scene: &on_device, see_through, technique, view, plan };
+    let transmission_parts = backend.transmission_parts(&on_device);
+    let passes = Passes { runner, scene: &on_device, transmission_parts, technique, view, plan };
     let rendered = passes.render(&mut picture);
     // What a cancelled image gathered is not complete.
     if let (Ok(_), Some(sources)) = (&rendered, sources) {

@@ -106,7 +106,7 @@ impl<'a> Resolved<'a> {
             size: window.size,
             // With one sample of a pixel, coverage is found from its depth.
             coverage: settings.transparent && antialiasing.is_some(),
-            caught: settings.transparent && (scene.catches() || scene.lets_through()),
+            caught: settings.transparent && (scene.catches() || scene.is_transmissive()),
             compositing: settings.layers,
             gathering: match settings.ambient_light.for_scene(&scene.scene) {
                 AmbientSource::Mesh => Some(Gathering::new(&whole, &bounds, settings.quality, left)),
@@ -117,7 +117,7 @@ impl<'a> Resolved<'a> {
             directions: most_directions(scene, bounces, antialiasing.as_ref()),
             antialiasing,
             bounces,
-            lets_through: scene.lets_through(),
+            is_transmissive: scene.is_transmissive(),
             lights,
             most_rows: settings.partial.then(|| bands::rows_in_parts(window.size[1])),
             memory_limit: settings.memory_limit,
@@ -195,7 +195,7 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
 fn bytes_per_ray(scene: &PreparedScene, technique: &Technique, lights: LightGroups) -> BytesPerRay {
     let held = lights.held() as u64;
     let BytesPerRay { host, device } = technique.bytes_per_ray(held);
-    let colors = if scene.lets_through() { size_of::<Vec3>() as u64 * held } else { 0 };
+    let colors = if scene.is_transmissive() { size_of::<Vec3>() as u64 * held } else { 0 };
     BytesPerRay { host: host + colors, device: device + colors }
 }
 

@@ -163,12 +163,12 @@ fn boundary(
 #[inline(always)]
 pub(crate) fn is_tinted(geometry: &Geometry, material: &Material) -> bool {
     let has_texture = || images_of(geometry, material).iter().any(Option::is_some);
-    let differs = material.lets_through() || material.faceted().is_some();
+    let differs = material.is_transmissive() || material.faceted().is_some();
     !material.catcher && (differs || !geometry.mesh.colors.is_empty() || has_texture())
 }
 
 /// What is left of light that goes straight on along `ray` at `hit`.
-pub(crate) fn transmittance(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> Vec3 {
+pub(crate) fn transmittance_at(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> Vec3 {
     let geometry = &scene.scene.geometry;
     let material = &geometry.materials[geometry.mesh.materials[geometry.mesh.stored(hit.triangle)] as usize];
     let filter = material.opacity.and_then(|opacity| opacity.filter()).unwrap_or(Vec3::ZERO);

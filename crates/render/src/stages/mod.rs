@@ -4,7 +4,6 @@
 pub(crate) mod adaptive_shadows;
 pub(crate) mod area_shadows;
 pub(crate) mod cells;
-pub(crate) mod filters;
 pub(crate) mod fragments;
 pub(crate) mod interpolate;
 pub(crate) mod irradiance_cache;
@@ -19,3 +18,4 @@ pub(crate) mod primary_rays;
 pub(crate) mod shade;
 pub(crate) mod shadow_rays;
 pub(crate) mod short_tests;
+pub(crate) mod transmittance;

@@ -31,11 +31,11 @@ mod points;
 mod progress;
 mod rough_mirrors;
 mod roughness_maps;
-mod see_through;
 mod seen_lights;
 mod shading;
 mod shadow_rays;
 mod textures;
+mod transmissive;
 mod walls;
 
 use glam::Vec3;

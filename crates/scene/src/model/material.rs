@@ -102,13 +102,13 @@ impl Material {
     }
 
     /// Whether light may go through a surface of this material.
-    pub fn lets_through(&self) -> bool {
+    pub fn is_transmissive(&self) -> bool {
         !self.catcher && self.opacity.is_some_and(|opacity| opacity.filter().is_some())
     }
 
     /// What it is made of, if light goes through.
     pub fn boundary(&self) -> Option<&Dielectric> {
-        self.dielectric.as_ref().filter(|_| self.lets_through())
+        self.dielectric.as_ref().filter(|_| self.is_transmissive())
     }
 
     /// Its facets, unless it is glass.

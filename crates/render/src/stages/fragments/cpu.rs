@@ -14,7 +14,7 @@ use crate::data::rays::{RayList, Sampled};
 use crate::data::samples::PixelSamples;
 use crate::data::wave::HostWave;
 use crate::sampling::Pattern;
-use crate::stages::pixel_samples::same_surface::{Facet, lets_through, mirrored_samples};
+use crate::stages::pixel_samples::same_surface::{Facet, is_transmissive, mirrored_samples};
 
 /// Number of pixels per task.
 const BATCH: usize = 1024;
@@ -147,7 +147,7 @@ impl Pixel<'_> {
         for first in (0..count).filter(|&sample| u32::from(owners[sample as usize]) == sample) {
             // What sees nothing costs nothing.
             let hit = samples.hit(pixel, first);
-            if lets_through(wave.scene, hit) {
+            if is_transmissive(wave.scene, hit) {
                 owned(first).for_each(|sample| add(1, sample, 0, single));
                 continue;
             }

@@ -122,7 +122,7 @@ DEVICE void add_fragments(const PixelSamples &args, unsigned index, Taker &taker
         rest &= ~part;
         // What sees nothing costs nothing.
         const Hit hit = sample_hit(args, index, first);
-        if (lets_through(args.scene, hit)) {
+        if (is_transmissive(args.scene, hit)) {
             for (unsigned left = part; left != 0; left &= left - 1)
                 take(args, index, taker, 1, __ffs(left) - 1, 0, args.weight);
             continue;

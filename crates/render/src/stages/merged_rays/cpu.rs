@@ -11,7 +11,7 @@ use crate::data::rays::RayList;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
 use crate::shading::seen_lights::SeenLights;
-use crate::stages::pixel_samples::same_surface::{Facet, lets_through, most_mirrored};
+use crate::stages::pixel_samples::same_surface::{Facet, is_transmissive, most_mirrored};
 
 /// Number of rays per task, without the rest of the last pixel.
 const BATCH: usize = 1024;
@@ -70,7 +70,7 @@ fn part_of(wave: &HostWave, seen: &SeenLights, first: usize, run: &Range<usize>,
     let all = (WARP as f32).sqrt();
     let may_merge =
         |ray: usize| wave.hits[ray].is_some() && list.throughs(ray) == 0 && seen.in_front(wave, ray, all).left == 1.0;
-    if !may_merge(first) || lets_through(scene, hit) {
+    if !may_merge(first) || is_transmissive(scene, hit) {
         return 1;
     }
     let facet = |ray: usize| {

@@ -33,7 +33,7 @@ DEVICE Vec3 weight_of_part(const MergedRays &args, unsigned first, unsigned part
 // The rays that ray `first` of a pixel takes of those up to `end`; bit k of `taken` stands for the k-th ray after `start`.
 DEVICE unsigned part_of(const MergedRays &args, unsigned first, unsigned start, unsigned end, unsigned taken) {
     const Hit hit = load_hit(args.hits, first);
-    if (!may_merge(args, first, hit) || lets_through(args.scene, hit))
+    if (!may_merge(args, first, hit) || is_transmissive(args.scene, hit))
         return 1;
     const Facet own = facet_of_ray(args, first, hit);
     const bool blurred = lights_share(args.rays, first) < 1.0f;

@@ -79,7 +79,7 @@ fn onward(wave: &HostWave, seen: &SeenLights, range: Range<usize>) -> RayList {
     let (list, has_cones) = (wave.rays, wave.rays.has_cones());
     let mut next = beyond(list);
     let mut thinning = Thinning::new(list);
-    let thins = wave.scene.lets_through();
+    let thins = wave.scene.is_transmissive();
     let least = if thins { MIN_THIN } else { MIN_ONWARD };
     let mut thinned = |index: usize, weight: Vec3| if thins { thinning.weight(index, weight) } else { Some(weight) };
     let mut add = |index: usize, ray: Ray, cone: Option<Cone>, weight: Vec3, sample: u32| {

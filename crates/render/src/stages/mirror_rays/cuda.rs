@@ -21,7 +21,7 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
     let counts = cuda.pool().room("counts of mirror rays", blocks as usize + 1)?;
     let per_ray = cuda.pool().room("mirror rays of each ray", rays.record.count as usize)?;
     let launch = blocks_for(&(0..u64::from(blocks)), BLOCK);
-    let thin = match wave.scene.host.lets_through() {
+    let thin = match wave.scene.host.is_transmissive() {
         true => Some(cuda.pool().room("shares of thin rays", rays.record.count as usize)?),
         false => None,
     };
@@ -60,6 +60,6 @@ pub(crate) fn mirror_rays<R: Runtime>(cuda: &Cuda<R>, wave: &DeviceWave<R>) -> R
     let own = Rays { cones: inputs, cone: Cone::zeroed(), first_pixel: 0, count: total as u32, ..rays.record };
     let record = Rays { list: list.input(), depth: rays.record.depth + 1, ..own };
     // A surface may both let rays through and mirror them.
-    let several = rays.several || wave.scene.host.lets_through();
+    let several = rays.several || wave.scene.host.is_transmissive();
     Ok(DeviceRays { several, cones, ..DeviceRays::new(record, Some(list), rays.spacing) })
 }

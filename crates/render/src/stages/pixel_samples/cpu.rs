@@ -9,7 +9,7 @@ use lightmesh_trace::accel::Hit;
 use rayon::prelude::*;
 
 use super::SampleRange;
-use super::same_surface::{Facet, Surfaces, lets_through};
+use super::same_surface::{Facet, Surfaces, is_transmissive};
 use crate::counters::Tally;
 use crate::data::mattes::count;
 use crate::data::picture::Picture;
@@ -79,7 +79,7 @@ pub(crate) fn pixel_samples(
             for ((&pixel, hit), ray) in pixels.iter().zip(hits).zip(through) {
                 let others = samples.of(pixel);
                 // Each sample has a ray of its own behind the surface.
-                let may_share = !lets_through(scene, hit);
+                let may_share = !is_transmissive(scene, hit);
                 // Most pixels need no surfaces.
                 if may_share && others.iter().all(|other| other.triangle == hit.triangle) {
                     parted.shared.push(pixel);

@@ -156,7 +156,7 @@ KERNEL(merge_samples, PixelSamples, BLOCK, 4) {
     own.hit = has ? sample_hit(args, place.ray, place.sample) : center;
     // Most pixels need no facets.
     // Each sample has a ray of its own behind the surface.
-    const bool may_share = !lets_through(args.scene, center);
+    const bool may_share = !is_transmissive(args.scene, center);
     const unsigned others = __ballot_sync(ALL_LANES, own.hit.triangle != center.triangle || !may_share);
     bool shared = true;
     unsigned owner = 0;

@@ -73,7 +73,7 @@ DEVICE const Material &material_of_hit(const Scene &scene, const Hit &hit) {
 }
 
 // Whether the surface at `hit` lets rays through.
-DEVICE bool lets_through(const Scene &scene, const Hit &hit) { return hit.triangle != Hit::NONE && material_of_hit(scene, hit).blends; }
+DEVICE bool is_transmissive(const Scene &scene, const Hit &hit) { return hit.triangle != Hit::NONE && material_of_hit(scene, hit).blends; }
 
 // The largest share that the surface at `hit` may mirror.
 DEVICE float most_mirrored(const Scene &scene, const Hit &hit) {

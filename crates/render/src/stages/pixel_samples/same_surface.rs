@@ -154,8 +154,8 @@ impl<'a> Surfaces<'a> {
 
 /// Whether the surface at `hit` lets rays through.
 #[inline(always)]
-pub(crate) fn lets_through(scene: &PreparedScene, hit: &Hit) -> bool {
-    hit.is_some() && material_at(scene, hit).lets_through()
+pub(crate) fn is_transmissive(scene: &PreparedScene, hit: &Hit) -> bool {
+    hit.is_some() && material_at(scene, hit).is_transmissive()
 }
 
 /// The largest share that the surface at `hit` may mirror.

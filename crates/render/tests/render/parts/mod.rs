@@ -62,7 +62,7 @@ fn plain(size: [u32; 2], lights: LightGroups, left: Option<u64>) -> Plan {
         size,
         antialiasing: None,
         bounces: 0,
-        lets_through: false,
+        is_transmissive: false,
         directions: 1,
         coverage: false,
         caught: false,

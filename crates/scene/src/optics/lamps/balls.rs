@@ -36,7 +36,7 @@ impl Lamp {
     /// The ball that shines as it does, if it is nearly one, and of material number `material`.
     pub(super) fn ball(&self, glow: &Glow, geometry: &Geometry, scene: &Extent, material: u32) -> Option<Light> {
         // 1. What is closed.
-        if geometry.materials[material as usize].lets_through() {
+        if geometry.materials[material as usize].is_transmissive() {
             return None;
         }
         let volume = self.volume()?;

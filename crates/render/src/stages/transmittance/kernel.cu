@@ -1,4 +1,4 @@
-// Filtered light on a CUDA device: twin of cpu.rs, one thread per surface point. Whatever lets light through has entries among the triangles
+// Transmittance on a CUDA device: twin of cpu.rs, one thread per surface point. Whatever lets light through has entries among the triangles
 // that are cut out.
 #define CUT_OUTS 1
 #include "cuda/prelude.cuh"
@@ -9,7 +9,7 @@
 #include "shadow/seen.cuh"
 #include "shadow/shadow.cuh"
 #include "shadow/terminator.cuh"
-#include "stages/filters/shown.cuh"
+#include "stages/transmittance/shown.cuh"
 
 // The structure of this type in a scene.
 DEVICE const Bvh &structure_of(const Scene &scene, const Bvh &) { return scene.bvh; }
@@ -22,7 +22,7 @@ COLD Vec3 left_by_glass(Triangles triangles, const Vec3 *normals, const Indices 
 }
 
 // What is left of light that goes through a surface.
-DEVICE Vec3 transmittance_at(const Filters &args, const Ray &ray, const Hit &hit) {
+DEVICE Vec3 transmittance_at(const Transmittance &args, const Ray &ray, const Hit &hit) {
     const Scene &scene = args.shadows.scene;
     const Triangle *triangle = stored_triangle(args.triangles, hit.triangle);
     const Material &material = scene.materials[material_index(scene, args.triangles, hit.triangle)];
@@ -34,16 +34,16 @@ DEVICE Vec3 transmittance_at(const Filters &args, const Ray &ray, const Hit &hit
 
 // Follows a ray through all surfaces that it meets: what is left of the light.
 template <class Structure>
-DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 target) {
+DEVICE Vec3 pass(const Transmittance &args, const Structure &transmissive, Vec3 from, Vec3 target) {
     const Ray ray = long_segment(from, target);
     Vec3 left = splat(1.0f);
     float last = 0.0f, next = 0.0f;
     unsigned met = 0;
     NearestHits hits;
     do {
-        find_nearest(panes, args.shadows.tally, ray, next, hits);
+        find_nearest(transmissive, args.shadows.tally, ray, next, hits);
         for (unsigned number = 0; number < hits.count && met < MAX_THROUGHS; ++number) {
-            Hit hit = nearest_hit(hits, panes, number);
+            Hit hit = nearest_hit(hits, transmissive, number);
             const float t = hit.t;
             if (t <= next)
                 continue;
@@ -59,21 +59,21 @@ DEVICE Vec3 pass(const Filters &args, const Structure &panes, Vec3 from, Vec3 ta
 }
 
 // The level of what a ray sees: how small a share of what it shows reaches the pixel.
-DEVICE unsigned level_of(const Filters &args, unsigned ray) {
+DEVICE unsigned level_of(const Transmittance &args, unsigned ray) {
     const Rays &rays = args.shadows.rays;
     if (rays.depth == 0 || args.middle)
         return 0;
     const float shown = max_element(splat(1.0f) - transmittance_at(args, ray_at(rays, ray), load_hit(args.shadows.hits, ray)));
     const float share = (float)args.parts * max_element(weight_of(rays, ray)) * shown;
     unsigned level = 0;
-    for (float most = PART_OF_LEVEL; level + 1 < FILTER_LEVELS && share <= most; most *= PART_OF_LEVEL)
+    for (float most = PART_OF_LEVEL; level + 1 < TRANSMITTANCE_LEVELS && share <= most; most *= PART_OF_LEVEL)
         ++level;
     return level;
 }
 
 // Calls `take` with each sample of a set.
 template <class Take>
-DEVICE void each_target(const Filters &args, const SurfacePoint &point, unsigned ray, Shape shape, Take take) {
+DEVICE void each_target(const Transmittance &args, const SurfacePoint &point, unsigned ray, Shape shape, Take take) {
     const Shadows &shadows = args.shadows;
     const Light &light = shadows.scene.lights[shadows.first_light];
     if (shape == SHAPE_POINT) {
@@ -99,7 +99,7 @@ struct Followed {
 };
 
 template <class Structure>
-DEVICE Followed follow(const Filters &args, const Structure &blockers, const SurfacePoint &point, unsigned ray, Shape shape,
+DEVICE Followed follow(const Transmittance &args, const Structure &blockers, const SurfacePoint &point, unsigned ray, Shape shape,
                        unsigned &cast) {
     const Vec3 none = splat(0.0f);
     Followed sums{none, none, none, 0.0f, 0.0f};
@@ -129,7 +129,7 @@ DEVICE Vec3 mean_left(const Followed &few) {
 }
 
 // Adds what a set of samples loses; after the last one, what is left takes its place.
-DEVICE void add_lost(const Filters &args, Shape shape, unsigned ray, Vec3 lost) {
+DEVICE void add_lost(const Transmittance &args, Shape shape, unsigned ray, Vec3 lost) {
     const Shadows &shadows = args.shadows;
     const unsigned long long place = (unsigned long long)shadows.first_light * shadows.rays.count + ray;
     Vec3 &passed = args.passed[place];
@@ -150,7 +150,7 @@ DEVICE void add_lost(const Filters &args, Shape shape, unsigned ray, Vec3 lost) 
 }
 
 // What few samples leave of a light takes the place of its share.
-DEVICE void put_left(const Filters &args, unsigned ray, Vec3 left) {
+DEVICE void put_left(const Transmittance &args, unsigned ray, Vec3 left) {
     const Shadows &shadows = args.shadows;
     const unsigned long long place = (unsigned long long)shadows.first_light * shadows.rays.count + ray;
     float &share = shadows.share[place];
@@ -164,7 +164,7 @@ DEVICE void put_left(const Filters &args, unsigned ray, Vec3 left) {
 }
 
 template <class Structure>
-DEVICE void filters(const Filters &args, const Structure &blockers) {
+DEVICE void transmittance(const Transmittance &args, const Structure &blockers) {
     const Shadows &shadows = args.shadows;
     unsigned ray, cast = 0;
     const Light &light = shadows.scene.lights[shadows.first_light];
@@ -191,4 +191,4 @@ DEVICE void filters(const Filters &args, const Structure &blockers) {
     count(tally_shard(shadows.tally).shadow_rays, cast);
 }
 
-KERNEL_PER_STRUCTURE(filters, Filters, BLOCK, 2)
+KERNEL_PER_STRUCTURE(transmittance, Transmittance, BLOCK, 2)

@@ -1,7 +1,7 @@
-//! Filtered light on the CPU: all samples of a light from one surface point at once.
+//! Transmittance on the CPU: all samples of a light from one surface point at once.
 
 use glam::Vec3;
-use lightmesh_layout::constants::{FILTER_LEVELS, MAX_THROUGHS, PART_OF_LEVEL};
+use lightmesh_layout::constants::{MAX_THROUGHS, PART_OF_LEVEL, TRANSMITTANCE_LEVELS};
 use lightmesh_scene::Bounds;
 use lightmesh_trace::accel::{Hit, Ray, TangentPlanes};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use crate::counters::Tally;
 use crate::data::visibility::Visibility;
 use crate::data::wave::{HostWave, Wave};
 use crate::prepared::PreparedScene;
-use crate::shading::tint::transmittance;
+use crate::shading::tint::transmittance_at;
 use crate::shadow::projected_light::Emitter;
 use crate::shadow::{ShadowTarget, hidden};
 use crate::stages::primary_rays::cpu::batch;
@@ -21,10 +21,10 @@ use crate::surface::{SurfacePoint, gap_behind, long_segment};
 /// So many samples are followed about as fast as it is asked whether they may meet anything.
 const FEW: u32 = 4;
 
-/// `visibility` with what `panes` leave of it.
-pub(crate) fn filters(
+/// `visibility` times the transmittance of what is `transmissive`.
+pub(crate) fn transmittance(
     wave: &HostWave,
-    panes: &PreparedScene,
+    transmissive: &PreparedScene,
     target: &ShadowTarget,
     mut visibility: Visibility,
 ) -> Visibility {
@@ -38,17 +38,17 @@ pub(crate) fn filters(
         let first = number * size;
         let rays = first..wave.hits.len().min(first + size);
         wave.context.piece(rays.len(), || {
-            let mut batch = Batch::new(&wave, panes);
+            let mut batch = Batch::new(&wave, transmissive);
             for ray in rays.filter(|&ray| wave.sees(ray)) {
                 let point = wave.shadow_point(ray);
-                let level = if levels.len() > 1 { level_of(&wave, panes, ray) } else { 0 };
+                let level = if levels.len() > 1 { level_of(&wave, transmissive, ray) } else { 0 };
                 for (emitter, (shares, passed)) in emitters[level].iter().zip(&mut planes) {
                     let (share, passed) = (&mut shares[ray - first], &mut passed[ray - first]);
                     if *share <= 0.0 {
                         continue;
                     }
                     let point = emitter.seen_from(&wave.scene.geometry, &point);
-                    if !may_show(&wave, panes, ray, &point, emitter.light().0) {
+                    if !may_show(&wave, transmissive, ray, &point, emitter.light().0) {
                         continue;
                     }
                     let left = match level {
@@ -67,14 +67,14 @@ pub(crate) fn filters(
 }
 
 /// The level of what a ray sees: how small a share of what it shows reaches the pixel.
-fn level_of(wave: &HostWave, panes: &PreparedScene, ray: usize) -> usize {
+fn level_of(wave: &HostWave, transmissive: &PreparedScene, ray: usize) -> usize {
     if wave.rays.depth == 0 {
         return 0;
     }
-    let shown = (Vec3::ONE - transmittance(panes, &wave.rays.rays[ray], &wave.hits[ray])).max_element();
+    let shown = (Vec3::ONE - transmittance_at(transmissive, &wave.rays.rays[ray], &wave.hits[ray])).max_element();
     let share = wave.parts as f32 * wave.rays.weight(ray).max_element() * shown;
     let (mut level, mut most) = (0, PART_OF_LEVEL);
-    while level + 1 < FILTER_LEVELS as usize && share <= most {
+    while level + 1 < TRANSMITTANCE_LEVELS as usize && share <= most {
         (level, most) = (level + 1, most * PART_OF_LEVEL);
     }
     level
@@ -83,7 +83,7 @@ fn level_of(wave: &HostWave, panes: &PreparedScene, ray: usize) -> usize {
 /// The shadow rays of one surface point to one light.
 struct Batch<'a> {
     wave: &'a HostWave<'a>,
-    panes: &'a PreparedScene,
+    transmissive: &'a PreparedScene,
     /// Where they end.
     targets: Vec<Vec3>,
     /// The set of samples that each belongs to.
@@ -95,8 +95,8 @@ struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    fn new(wave: &'a HostWave<'a>, panes: &'a PreparedScene) -> Batch<'a> {
-        Batch { wave, panes, targets: Vec::new(), sets: Vec::new(), left: Vec::new(), rays: Vec::new() }
+    fn new(wave: &'a HostWave<'a>, transmissive: &'a PreparedScene) -> Batch<'a> {
+        Batch { wave, transmissive, targets: Vec::new(), sets: Vec::new(), left: Vec::new(), rays: Vec::new() }
     }
 
     /// What is left of a share of a light by all of its samples; `None` if that is all of it.
@@ -172,9 +172,9 @@ impl<'a> Batch<'a> {
         dimmed().zip(hidden(self.wave, &segments)).collect()
     }
 
-    /// Whether any pane may be between a surface point and an emitter.
+    /// Whether any transmissive surface may be between a surface point and an emitter.
     fn may_meet(&self, emitter: &Emitter, point: &SurfacePoint) -> bool {
-        let geometry = &self.panes.geometry;
+        let geometry = &self.transmissive.geometry;
         let origin = Bounds { min: point.origin, max: point.origin };
         let planes = TangentPlanes::new(point.origin, [(point.origin, point.normal)], 0.0);
         let mut found = false;
@@ -187,14 +187,14 @@ impl<'a> Batch<'a> {
 
     /// Follows rays through all surfaces that they meet. Returns whether they meet any.
     fn pass(&mut self, origin: Vec3) -> bool {
-        let Batch { panes, rays, targets, left, .. } = self;
+        let Batch { transmissive, rays, targets, left, .. } = self;
         left.clear();
         left.resize(targets.len(), Vec3::ONE);
         rays.clear();
         rays.extend(targets.iter().map(|&target| long_segment(origin, target)));
         let mut met = false;
-        panes.geometry.accelerator.all_hits(rays, &mut |ray, hits| {
-            left[ray] = left_behind(panes, &rays[ray], hits);
+        transmissive.geometry.accelerator.all_hits(rays, &mut |ray, hits| {
+            left[ray] = left_behind(transmissive, &rays[ray], hits);
             met = true;
         });
         met
@@ -202,15 +202,15 @@ impl<'a> Batch<'a> {
 }
 
 /// What is left of light along a ray behind these hits, which are in order.
-fn left_behind(panes: &PreparedScene, ray: &Ray, hits: &[Hit]) -> Vec3 {
+fn left_behind(transmissive: &PreparedScene, ray: &Ray, hits: &[Hit]) -> Vec3 {
     let (mut left, mut last, mut next, mut met) = (Vec3::ONE, 0.0, 0.0, 0);
     for hit in hits {
         if hit.t <= next || met == MAX_THROUGHS {
             continue;
         }
         // Bodies absorb light from one surface to the next.
-        left *= transmittance(panes, ray, &Hit { t: hit.t - last, ..*hit });
-        next = hit.t + gap_behind(ray, hit, &panes.geometry.triangles.at(hit.triangle));
+        left *= transmittance_at(transmissive, ray, &Hit { t: hit.t - last, ..*hit });
+        next = hit.t + gap_behind(ray, hit, &transmissive.geometry.triangles.at(hit.triangle));
         (last, met) = (hit.t, met + 1);
     }
     left

@@ -1,4 +1,4 @@
-//! Whether it can be seen what panes leave of a light: glass and other surfaces without diffuse reflection show little more of a light than its
+//! Whether it can be seen what transmissive surfaces leave of a light: glass and other surfaces without diffuse reflection show little more of a light than its
 //! highlight, and most of them are looked at from where there is none. Twin: `shown.cuh`.
 //!
 //! The light is within a cone around the way to its centre, of the half angle β with sin β = radius / distance. If the mirrored view makes the angle
@@ -19,12 +19,12 @@ use crate::surface::{SurfacePoint, shading_normal};
 /// Whether what a ray sees at `point` may show that much of `light`.
 pub(super) fn may_show(
     wave: &HostWave,
-    panes: &PreparedScene,
+    transmissive: &PreparedScene,
     ray: usize,
     point: &SurfacePoint,
     light: &Light,
 ) -> bool {
-    let (geometry, hit) = (&panes.scene.geometry, &wave.hits[ray]);
+    let (geometry, hit) = (&transmissive.scene.geometry, &wave.hits[ray]);
     if wave.rays.depth == 0 {
         return true;
     }

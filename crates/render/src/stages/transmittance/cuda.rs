@@ -1,7 +1,7 @@
-//! Filtered light on a CUDA device.
+//! Transmittance on a CUDA device.
 
 use lightmesh_kernels::Runtime;
-use lightmesh_layout::stages::{Filters, Shadows};
+use lightmesh_layout::stages::{Shadows, Transmittance};
 
 use super::levels;
 use crate::data::wave::Wave;
@@ -13,23 +13,23 @@ use crate::shadow::launch::SampleSets;
 
 /// One for all scenes: see the kernel.
 const KERNEL: PerStructure = PerStructure {
-    modules: Modules { plain: "filters", cut_out: "filters", instanced: "filters" },
-    names: lightmesh_layout::names_per_structure!("filters"),
+    modules: Modules { plain: "transmittance", cut_out: "transmittance", instanced: "transmittance" },
+    names: lightmesh_layout::names_per_structure!("transmittance"),
 };
 
-/// `visibility` with what `panes` leave of it: light by light and set by set, so that no thread casts more rays than a launch may take.
-pub(crate) fn filters<R: Runtime>(
+/// `visibility` times the transmittance of what is `transmissive`: light by light and set by set, so that no thread casts more rays than a launch may take.
+pub(crate) fn transmittance<R: Runtime>(
     cuda: &Cuda<R>,
     wave: &DeviceWave<R>,
-    panes: &DeviceScene<R>,
+    transmissive: &DeviceScene<R>,
     target: &ShadowTarget,
     visibility: DeviceVisibility<R>,
 ) -> Result<DeviceVisibility<R>, RenderError> {
     let lights = visibility.lights.len() as u64;
-    let passed = cuda.pool().room("light that is let through", wave.rays.len() * lights as usize)?;
+    let passed = cuda.pool().room("transmitted light", wave.rays.len() * lights as usize)?;
     let visibility = DeviceVisibility { passed: Some(passed), ..visibility };
-    let kernel = KERNEL.of(panes);
-    let of_panes = Wave { scene: panes, ..*wave };
+    let kernel = KERNEL.of(transmissive);
+    let of_transmissive = Wave { scene: transmissive, ..*wave };
     let with_rows = |target: ShadowTarget| (target, SampleSets::new(wave.rows(&target)));
     let levels: Vec<(ShadowTarget, SampleSets)> = levels(target).into_iter().map(with_rows).collect();
     // A light without samples has its centre.
@@ -40,15 +40,15 @@ pub(crate) fn filters<R: Runtime>(
     for (level, (target, sets)) in (0..).zip(&levels) {
         for slice in 0..slices_of(sets) {
             let (set, light) = ((slice / lights) as u32, visibility.lights.start as u32 + (slice % lights) as u32);
-            let mut shadows = sets.record(cuda, &of_panes, &visibility, set)?;
+            let mut shadows = sets.record(cuda, &of_transmissive, &visibility, set)?;
             if let ShadowTarget::Area(all) = target {
                 shadows.sampling = sampling(*all);
             }
-            let record = Filters {
+            let record = Transmittance {
                 scene: wave.scene.record,
                 shadows: Shadows { first_light: light, end_light: light + 1, ..shadows },
-                triangles: panes.triangles(),
-                normals: panes.normals(),
+                triangles: transmissive.triangles(),
+                normals: transmissive.normals(),
                 passed: visibility.passed_planes(),
                 middle: u32::from(matches!(target, ShadowTarget::Center)),
                 level,
@@ -61,7 +61,7 @@ pub(crate) fn filters<R: Runtime>(
             let work = Work::of_rays(wave.rays.blocks(BLOCK_SIDE), &(0..rays), pieces);
             cuda.in_pieces(wave.context, kernel, work, |piece| {
                 let shadows = Shadows { first: piece.start, count: piece.end - piece.start, ..record.shadows };
-                cuda.launch(kernel, blocks_for(&piece, BLOCK), &Filters { shadows, ..record })
+                cuda.launch(kernel, blocks_for(&piece, BLOCK), &Transmittance { shadows, ..record })
             })?;
         }
     }

@@ -22,7 +22,7 @@ pub(crate) mod cpu;
 pub(crate) mod cuda;
 mod shown;
 
-use lightmesh_layout::constants::{FILTER_LEVELS, LEVEL_SHIFT, MAX_OF_LEVEL};
+use lightmesh_layout::constants::{LEVEL_SHIFT, MAX_OF_LEVEL, TRANSMITTANCE_LEVELS};
 
 use crate::render_context::Sampling;
 use crate::shadow::ShadowTarget;
@@ -34,5 +34,5 @@ fn levels(target: &ShadowTarget) -> Vec<ShadowTarget> {
         0 => all.samples,
         _ => (all.samples >> (LEVEL_SHIFT * level)).clamp(1, MAX_OF_LEVEL),
     };
-    (0..FILTER_LEVELS).map(|level| ShadowTarget::Area(Sampling { samples: samples(level), ..all })).collect()
+    (0..TRANSMITTANCE_LEVELS).map(|level| ShadowTarget::Area(Sampling { samples: samples(level), ..all })).collect()
 }

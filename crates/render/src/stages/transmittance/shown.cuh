@@ -1,4 +1,4 @@
-// Whether it can be seen what panes leave of a light: twin of shown.rs.
+// Whether it can be seen what transmissive surfaces leave of a light: twin of shown.rs.
 #pragma once
 
 #include "shading/falloff.cuh"
@@ -11,7 +11,7 @@ DEVICE bool has_mere_highlights(const Material &material) {
 }
 
 // Whether what a ray sees at `point` may show that much of a light.
-DEVICE bool may_show(const Filters &args, unsigned ray, const SurfacePoint &point, const Light &light) {
+DEVICE bool may_show(const Transmittance &args, unsigned ray, const SurfacePoint &point, const Light &light) {
     const Scene &scene = args.shadows.scene;
     const Rays &rays = args.shadows.rays;
     if (rays.depth == 0)
