@@ -1,5 +1,5 @@
 // Searches by region, one warp each: tests accel/search.cuh and accel/region.cuh, with all structures.
-#define CUT_OUTS 1
+#define ALPHA_TEST 1
 #define WALKS_grid 1
 #include "cuda/prelude.cuh"
 

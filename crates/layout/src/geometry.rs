@@ -99,7 +99,7 @@ records! {
     }
 
     /// Where triangles are cut out.
-    Coverage {
+    AlphaMask {
         /// By number, from 1; null if nothing is cut out.
         triangles: In<CutTriangle>,
         /// Masks.
@@ -150,7 +150,7 @@ records! {
         /// In leaf order.
         triangles: In<Triangle>,
         /// Where they are cut out.
-        coverage: Coverage,
+        alpha_mask: AlphaMask,
         /// The sphere around its triangles.
         ray_clamp: RayClamp,
         /// Number of nodes; 0 if there are no triangles.
@@ -166,7 +166,7 @@ records! {
         /// In leaf order; triangles with the number of an instance are the boxes around it.
         triangles: In<Triangle>,
         /// Where they are cut out.
-        coverage: Coverage,
+        alpha_mask: AlphaMask,
         /// By number, in the order of their triangles.
         instances: In<Instanced>,
         /// The sphere around all.
@@ -208,7 +208,7 @@ records! {
         /// The usable triangles.
         triangles: In<Triangle>,
         /// Where they are cut out.
-        coverage: Coverage,
+        alpha_mask: AlphaMask,
         /// The sphere around them.
         ray_clamp: RayClamp,
         /// Their number.

@@ -2,7 +2,7 @@
 
 use crate::In;
 use crate::constants::{MAX_ROWS, MAX_WORDS};
-use crate::geometry::{BruteForce, Bvh, Coverage, Grid, InstancedBvh, Triangles, Vec3};
+use crate::geometry::{AlphaMask, BruteForce, Bvh, Grid, InstancedBvh, Triangles, Vec3};
 use crate::record::records;
 
 records! {
@@ -241,7 +241,7 @@ records! {
         /// directional light at distance 1 from the origin.
         light_targets: In<Vec3>,
         /// Where triangles are cut out, and how opaque they are.
-        coverage: Coverage,
+        alpha_mask: AlphaMask,
         /// What surrounds it.
         environment: Environment,
         /// The regular grid.

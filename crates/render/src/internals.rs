@@ -3,7 +3,7 @@
 //! Tests are a crate of their own, so that the renderer is compiled once, not a second time with its tests.
 
 pub mod accel {
-    pub use lightmesh_trace::accel::{Beams, Coverage};
+    pub use lightmesh_trace::accel::{AlphaMask, Beams};
     pub use lightmesh_trace::internals::*;
 }
 

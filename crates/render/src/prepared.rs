@@ -9,8 +9,8 @@ use glam::Vec3;
 use lightmesh_memory::{Budget, OverBudget};
 use lightmesh_scene::{Bounds, Camera, Geometry, Instance, Lights, Material, Mesh, Scene, Texture};
 use lightmesh_trace::accel::{
-    Accelerator, AcceleratorKind, Beams, BruteForce, Bvh, Coverage, Grid, GridOptions, Triangle, Triangles, coverage,
-    geometry_hash,
+    Accelerator, AcceleratorKind, AlphaMask, Beams, BruteForce, Bvh, Grid, GridOptions, Triangle, Triangles,
+    alpha_mask, geometry_hash,
 };
 use xxhash_rust::xxh3::Xxh3;
 
@@ -39,7 +39,7 @@ pub struct PreparedGeometry {
     /// The box around all triangles that can be hit.
     pub bounds: Bounds,
     /// Where triangles are cut out.
-    pub(crate) coverage: Coverage,
+    pub(crate) alpha_mask: AlphaMask,
     /// The numbers and names of materials.
     pub(crate) materials: MaterialIds,
     /// The smaller levels of textures, by number; empty if no texture is seen.
@@ -83,7 +83,7 @@ pub struct TransmissionParts<T> {
 impl PreparedGeometry {
     /// For rays that lie close together.
     pub(crate) fn beams(&self) -> Beams<'_> {
-        Beams::new(&*self.accelerator, &self.triangles, &self.coverage, &self.bounds)
+        Beams::new(&*self.accelerator, &self.triangles, &self.alpha_mask, &self.bounds)
     }
 
     /// Builds the acceleration structure over `geometry`, and the smaller levels of its textures.
@@ -102,10 +102,10 @@ impl PreparedGeometry {
         observer.begin(Stage::Build, geometry.mesh.triangles.len() as u64);
         let start = std::time::Instant::now();
         check_memory(geometry, budget)?;
-        let (triangles, coverage) = triangles_of(geometry, budget)?;
+        let (triangles, alpha_mask) = triangles_of(geometry, budget)?;
         let mip_levels = Arc::new(mip_levels(geometry, budget)?);
         let prepared =
-            Structures { geometry, acceleration, budget, known: None }.over(triangles, coverage, mip_levels)?;
+            Structures { geometry, acceleration, budget, known: None }.over(triangles, alpha_mask, mip_levels)?;
         *locked(&prepared.unreported) = start.elapsed().as_secs_f64();
         observer.advance(geometry.mesh.triangles.len() as u64);
         observer.end(Stage::Build);
@@ -132,7 +132,7 @@ impl PreparedGeometry {
         let start = std::time::Instant::now();
         check_memory(geometry, budget)?;
         let triangle = |(index, before): (usize, &Triangle)| {
-            Triangle::new(geometry.mesh.corners(index), index as u32).cut_out(before.cut())
+            Triangle::new(geometry.mesh.corners(index), index as u32).alpha_tested(before.cut())
         };
         let triangles: Vec<Triangle> = self.triangles.stored().iter().enumerate().map(triangle).collect();
         let boxes = boxes([before, geometry], self.triangles.stored(), &triangles);
@@ -142,7 +142,7 @@ impl PreparedGeometry {
             _ => None,
         };
         let structures = Structures { geometry, acceleration: &self.acceleration, budget, known };
-        let mut prepared = structures.over(triangles, self.coverage.clone(), Arc::clone(&self.mip_levels))?;
+        let mut prepared = structures.over(triangles, self.alpha_mask.clone(), Arc::clone(&self.mip_levels))?;
         let deformation = |before: &Arc<PreparedGeometry>| {
             Some(Deformation { before: Arc::downgrade(before), boxes: Arc::clone(&boxes) })
         };
@@ -172,23 +172,23 @@ impl PreparedGeometry {
             false => Triangle::new([Vec3::NAN; 3], triangle.index()),
         };
         let held: Vec<Triangle> = self.triangles.stored().iter().map(held).collect();
-        let structure = accelerator(mesh, &held, &self.coverage, &self.acceleration, (budget, None))?;
-        Ok(PreparedGeometry { held: geometry_hash(&held), ..self.over(structure, self.coverage.clone()) })
+        let structure = accelerator(mesh, &held, &self.alpha_mask, &self.acceleration, (budget, None))?;
+        Ok(PreparedGeometry { held: geometry_hash(&held), ..self.over(structure, self.alpha_mask.clone()) })
     }
 
     /// The same where what is at least half opaque is opaque, and the rest is none.
     fn gi_occluders(&self) -> PreparedGeometry {
-        let coverage = self.coverage.halved();
-        self.over(self.accelerator.covered_by(&coverage), coverage)
+        let alpha_mask = self.alpha_mask.halved();
+        self.over(self.accelerator.masked_by(&alpha_mask), alpha_mask)
     }
 
-    /// The same with another structure, cut out by `coverage`.
-    fn over(&self, accelerator: Box<dyn Accelerator>, coverage: Coverage) -> PreparedGeometry {
+    /// The same with another structure, cut out by `alpha_mask`.
+    fn over(&self, accelerator: Box<dyn Accelerator>, alpha_mask: AlphaMask) -> PreparedGeometry {
         PreparedGeometry {
             triangles: self.triangles.clone(),
             accelerator,
             bounds: self.bounds,
-            coverage,
+            alpha_mask,
             materials: self.materials.clone(),
             mip_levels: Arc::clone(&self.mip_levels),
             transmission_parts: None,
@@ -233,7 +233,7 @@ impl PreparedGeometry {
         let levels = self.mip_levels.memory();
         let parts = self.transmission_parts.iter().flat_map(|parts| [&parts.blockers, &parts.transmissive]);
         let parts: usize = parts.map(|part| part.accelerator.memory()).sum();
-        size_of_val(self.triangles.stored()) + self.accelerator.memory() + self.coverage.memory() + levels + parts
+        size_of_val(self.triangles.stored()) + self.accelerator.memory() + self.alpha_mask.memory() + levels + parts
     }
 
     /// Hash of all that decides what hides what: triangles in their order, which of them there are, and where they are cut out. The same for
@@ -245,7 +245,7 @@ impl PreparedGeometry {
             hash.update(&geometry_hash(self.triangles.stored()).to_le_bytes());
             self.triangles.instances().iter().for_each(|instance| hash.update(&instance.key()));
             hash.update(&self.held.to_le_bytes());
-            self.coverage.add_to_hash(&mut hash);
+            self.alpha_mask.add_to_hash(&mut hash);
             hash.digest()
         })
     }
@@ -268,9 +268,9 @@ impl PreparedGeometry {
 /// Fails if there is not enough memory to build structures.
 fn check_memory(geometry: &Geometry, budget: Budget) -> Result<(), RenderError> {
     let triangles = geometry.mesh.triangles.len();
-    let cut_out = geometry.materials.iter().any(|material| material.opacity.is_some());
+    let alpha_test = geometry.materials.iter().any(|material| material.opacity.is_some());
     let parts = if geometry.materials.iter().any(Material::is_transmissive) { 3 } else { 1 };
-    let bytes = parts * BYTES_TO_BUILD + if cut_out { coverage::BYTES_TO_BUILD } else { 0 };
+    let bytes = parts * BYTES_TO_BUILD + if alpha_test { alpha_mask::BYTES_TO_BUILD } else { 0 };
     budget.check(triangles as u64 * bytes).map_err(|short| RenderError::BuildMemory { triangles, short })
 }
 
@@ -287,13 +287,13 @@ impl Structures<'_> {
     fn over(
         &self,
         triangles: Vec<Triangle>,
-        coverage: Coverage,
+        alpha_mask: AlphaMask,
         mip_levels: Arc<AllLevels>,
     ) -> Result<PreparedGeometry, RenderError> {
         let Structures { geometry, acceleration, budget, known } = *self;
         let accelerator: Box<dyn Accelerator> = match acceleration {
-            Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?.with_coverage(&coverage)),
-            other => accelerator(&geometry.mesh, &triangles, &coverage, other, (budget, known))?,
+            Acceleration::GridFile(path) => Box::new(Grid::load(path, &triangles)?.with_alpha_mask(&alpha_mask)),
+            other => accelerator(&geometry.mesh, &triangles, &alpha_mask, other, (budget, known))?,
         };
         // Triangles that cannot be hit do not count.
         let own = geometry.mesh.own_triangles().map(|stored| &triangles[stored]);
@@ -308,7 +308,7 @@ impl Structures<'_> {
             },
             accelerator,
             bounds,
-            coverage,
+            alpha_mask,
             materials: MaterialIds::new(geometry),
             mip_levels,
             transmission_parts: None,
@@ -340,35 +340,35 @@ impl Structures<'_> {
 fn accelerator(
     mesh: &Mesh,
     triangles: &[Triangle],
-    coverage: &Coverage,
+    alpha_mask: &AlphaMask,
     acceleration: &Acceleration,
     (budget, known): (Budget, Option<&Bvh>),
 ) -> Result<Box<dyn Accelerator>, RenderError> {
     let dims = if let Acceleration::Grid(dims) = acceleration { *dims } else { None };
     Ok(match acceleration {
         Acceleration::Auto | Acceleration::Bvh if mesh.instances.is_empty() => {
-            Box::new(Bvh::new(triangles).with_coverage(coverage))
+            Box::new(Bvh::new(triangles).with_alpha_mask(alpha_mask))
         }
         Acceleration::Auto | Acceleration::Bvh => {
             let own: Vec<Triangle> = mesh.own_triangles().map(|stored| triangles[stored]).collect();
-            Box::new(Bvh::with_instances(&own, triangles, mesh.instances.list(), known).with_coverage(coverage))
+            Box::new(Bvh::with_instances(&own, triangles, mesh.instances.list(), known).with_alpha_mask(alpha_mask))
         }
         Acceleration::Grid(_) | Acceleration::GridFile(_) => {
             let options = GridOptions { dims, budget, ..GridOptions::default() };
-            Box::new(Grid::new(triangles, &options)?.with_coverage(coverage))
+            Box::new(Grid::new(triangles, &options)?.with_alpha_mask(alpha_mask))
         }
-        Acceleration::BruteForce => Box::new(BruteForce::new(triangles).with_coverage(coverage)),
+        Acceleration::BruteForce => Box::new(BruteForce::new(triangles).with_alpha_mask(alpha_mask)),
     })
 }
 
 /// The triangles of a geometry by index, and where they are cut out.
-fn triangles_of(geometry: &Geometry, budget: Budget) -> Result<(Vec<Triangle>, Coverage), RenderError> {
-    let (coverage, numbers) = Coverage::of(geometry, budget).map_err(|found| too_large(geometry, found))?;
+fn triangles_of(geometry: &Geometry, budget: Budget) -> Result<(Vec<Triangle>, AlphaMask), RenderError> {
+    let (alpha_mask, numbers) = AlphaMask::of(geometry, budget).map_err(|found| too_large(geometry, found))?;
     let triangle = |index: usize| {
         let number = numbers.get(index).copied().unwrap_or(0);
-        Triangle::new(geometry.mesh.corners(index), index as u32).cut_out(number)
+        Triangle::new(geometry.mesh.corners(index), index as u32).alpha_tested(number)
     };
-    Ok(((0..geometry.mesh.triangles.len()).map(triangle).collect(), coverage))
+    Ok(((0..geometry.mesh.triangles.len()).map(triangle).collect(), alpha_mask))
 }
 
 fn mip_levels(geometry: &Geometry, budget: Budget) -> Result<AllLevels, RenderError> {

@@ -10,8 +10,8 @@ pub mod textures;
 /// Parts for tests. They are no interface: they change with any release.
 #[doc(hidden)]
 pub mod internals {
+    pub use crate::accel::alpha_mask::between;
     pub use crate::accel::bvh::build::{Child, LEVELS, Work, children, depth, extent, planes, tree};
-    pub use crate::accel::coverage::between;
     pub use crate::accel::deduplicate::deduplicate;
     pub use crate::accel::grid::distance::spread;
     pub use crate::accel::grid::file::{HEADER, Header, TRAILER, decode};

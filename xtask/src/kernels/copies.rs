@@ -16,7 +16,7 @@ use super::sources::{LAYOUT, sources_under};
 /// Macros and numbers that only kernels use, and why.
 const ALLOWED: [(&str, &str); 35] = [
     ("0x7ff0000000000000ll", "the bits of a double's exponent; Rust has functions for them"),
-    ("CUT_OUTS", "the host chooses the module that was compiled with it"),
+    ("ALPHA_TEST", "the host chooses the module that was compiled with it"),
     ("INSTANCES", "modules without it are for scenes without instances; the host chooses"),
     ("WALKS_bvh", "which structures a module walks; the host chooses the module"),
     ("WALKS_grid", "which structures a module walks; the host chooses the module"),

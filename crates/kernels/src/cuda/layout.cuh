@@ -635,13 +635,13 @@ static_assert(PLACE_OF(Mask, translation) == 40, "place of Mask::translation");
 static_assert(PLACE_OF(Mask, limit) == 48, "place of Mask::limit");
 static_assert(PLACE_OF(Mask, blends) == 52, "place of Mask::blends");
 
-struct alignas(8) Coverage {
+struct alignas(8) AlphaMask {
     const CutTriangle *triangles;
     const Mask *masks;
 };
-static_assert(sizeof(Coverage) == 16, "size of Coverage");
-static_assert(PLACE_OF(Coverage, triangles) == 0, "place of Coverage::triangles");
-static_assert(PLACE_OF(Coverage, masks) == 8, "place of Coverage::masks");
+static_assert(sizeof(AlphaMask) == 16, "size of AlphaMask");
+static_assert(PLACE_OF(AlphaMask, triangles) == 0, "place of AlphaMask::triangles");
+static_assert(PLACE_OF(AlphaMask, masks) == 8, "place of AlphaMask::masks");
 
 struct alignas(4) BvhNode {
     Vec3 p;
@@ -682,7 +682,7 @@ static_assert(PLACE_OF(RayClamp, radius) == 12, "place of RayClamp::radius");
 struct alignas(8) Bvh {
     const BvhNode *nodes;
     const Triangle *triangles;
-    Coverage coverage;
+    AlphaMask alpha_mask;
     RayClamp ray_clamp;
     unsigned node_count;
     unsigned depth;
@@ -690,7 +690,7 @@ struct alignas(8) Bvh {
 static_assert(sizeof(Bvh) == 56, "size of Bvh");
 static_assert(PLACE_OF(Bvh, nodes) == 0, "place of Bvh::nodes");
 static_assert(PLACE_OF(Bvh, triangles) == 8, "place of Bvh::triangles");
-static_assert(PLACE_OF(Bvh, coverage) == 16, "place of Bvh::coverage");
+static_assert(PLACE_OF(Bvh, alpha_mask) == 16, "place of Bvh::alpha_mask");
 static_assert(PLACE_OF(Bvh, ray_clamp) == 32, "place of Bvh::ray_clamp");
 static_assert(PLACE_OF(Bvh, node_count) == 48, "place of Bvh::node_count");
 static_assert(PLACE_OF(Bvh, depth) == 52, "place of Bvh::depth");
@@ -698,7 +698,7 @@ static_assert(PLACE_OF(Bvh, depth) == 52, "place of Bvh::depth");
 struct alignas(8) InstancedBvh {
     const BvhNode *nodes;
     const Triangle *triangles;
-    Coverage coverage;
+    AlphaMask alpha_mask;
     const Instanced *instances;
     RayClamp ray_clamp;
     unsigned node_count;
@@ -709,7 +709,7 @@ struct alignas(8) InstancedBvh {
 static_assert(sizeof(InstancedBvh) == 72, "size of InstancedBvh");
 static_assert(PLACE_OF(InstancedBvh, nodes) == 0, "place of InstancedBvh::nodes");
 static_assert(PLACE_OF(InstancedBvh, triangles) == 8, "place of InstancedBvh::triangles");
-static_assert(PLACE_OF(InstancedBvh, coverage) == 16, "place of InstancedBvh::coverage");
+static_assert(PLACE_OF(InstancedBvh, alpha_mask) == 16, "place of InstancedBvh::alpha_mask");
 static_assert(PLACE_OF(InstancedBvh, instances) == 32, "place of InstancedBvh::instances");
 static_assert(PLACE_OF(InstancedBvh, ray_clamp) == 40, "place of InstancedBvh::ray_clamp");
 static_assert(PLACE_OF(InstancedBvh, node_count) == 56, "place of InstancedBvh::node_count");
@@ -741,14 +741,14 @@ static_assert(PLACE_OF(Grid, margin) == 92, "place of Grid::margin");
 
 struct alignas(8) BruteForce {
     const Triangle *triangles;
-    Coverage coverage;
+    AlphaMask alpha_mask;
     RayClamp ray_clamp;
     unsigned count;
     unsigned spare;
 };
 static_assert(sizeof(BruteForce) == 48, "size of BruteForce");
 static_assert(PLACE_OF(BruteForce, triangles) == 0, "place of BruteForce::triangles");
-static_assert(PLACE_OF(BruteForce, coverage) == 8, "place of BruteForce::coverage");
+static_assert(PLACE_OF(BruteForce, alpha_mask) == 8, "place of BruteForce::alpha_mask");
 static_assert(PLACE_OF(BruteForce, ray_clamp) == 24, "place of BruteForce::ray_clamp");
 static_assert(PLACE_OF(BruteForce, count) == 40, "place of BruteForce::count");
 static_assert(PLACE_OF(BruteForce, spare) == 44, "place of BruteForce::spare");
@@ -1084,7 +1084,7 @@ struct alignas(8) Scene {
     const unsigned *objects;
     const Light *lights;
     const Vec3 *light_targets;
-    Coverage coverage;
+    AlphaMask alpha_mask;
     Environment environment;
     Grid grid;
     Bvh bvh;
@@ -1114,7 +1114,7 @@ static_assert(PLACE_OF(Scene, object_starts) == 96, "place of Scene::object_star
 static_assert(PLACE_OF(Scene, objects) == 104, "place of Scene::objects");
 static_assert(PLACE_OF(Scene, lights) == 112, "place of Scene::lights");
 static_assert(PLACE_OF(Scene, light_targets) == 120, "place of Scene::light_targets");
-static_assert(PLACE_OF(Scene, coverage) == 128, "place of Scene::coverage");
+static_assert(PLACE_OF(Scene, alpha_mask) == 128, "place of Scene::alpha_mask");
 static_assert(PLACE_OF(Scene, environment) == 144, "place of Scene::environment");
 static_assert(PLACE_OF(Scene, grid) == 352, "place of Scene::grid");
 static_assert(PLACE_OF(Scene, bvh) == 448, "place of Scene::bvh");

@@ -38,9 +38,9 @@
 #include "shim.h"
 #endif
 
-// Whether a module tests what is cut out: see accel/coverage.cuh.
-#ifndef CUT_OUTS
-#define CUT_OUTS 0
+// Whether a module tests what is cut out: see accel/alpha_mask.cuh.
+#ifndef ALPHA_TEST
+#define ALPHA_TEST 0
 #endif
 
 // Whether it is for scenes with shapes in many places, too: see accel/instanced.cuh.

@@ -6,7 +6,7 @@ use std::collections::hash_map::Entry;
 use glam::Vec2;
 use lightmesh_kernels::Runtime;
 use lightmesh_layout::In;
-use lightmesh_layout::geometry::{Coverage, Mask, Vec3};
+use lightmesh_layout::geometry::{AlphaMask, Mask, Vec3};
 use lightmesh_layout::scene::{FacetShare, Material, Scene as Record, Texture, TextureLevel, Uv};
 use lightmesh_scene::{Geometry, Wrap};
 use lightmesh_trace::accel;
@@ -108,30 +108,32 @@ impl<R: Runtime> Upload<'_, R> {
 
 impl<R: Runtime> Upload<'_, R> {
     /// Where triangles are cut out, nothing if all are opaque; and the same with the masks of `halved`, which shares the rest.
-    pub(super) fn coverage(
+    pub(super) fn alpha_mask(
         &mut self,
-        coverage: &accel::Coverage,
-        halved: Option<&accel::Coverage>,
-    ) -> Result<[Coverage; 2], RenderError> {
-        let Some(table) = coverage.table() else { return Ok([Coverage { triangles: In::NULL, masks: In::NULL }; 2]) };
+        alpha_mask: &accel::AlphaMask,
+        halved: Option<&accel::AlphaMask>,
+    ) -> Result<[AlphaMask; 2], RenderError> {
+        let Some(table) = alpha_mask.table() else {
+            return Ok([AlphaMask { triangles: In::NULL, masks: In::NULL }; 2]);
+        };
         let mut planes = Vec::new();
         for plane in &table.planes {
             planes.push(self.array("opacities of textures", plane)?);
         }
-        let own = Coverage {
+        let own = AlphaMask {
             triangles: self.array("cut-out triangles", &table.triangles)?,
             masks: self.masks(&table.masks, &planes)?,
         };
-        let halved = match halved.and_then(accel::Coverage::table) {
-            Some(halved) => Coverage { masks: self.masks(&halved.masks, &planes)?, ..own },
+        let halved = match halved.and_then(accel::AlphaMask::table) {
+            Some(halved) => AlphaMask { masks: self.masks(&halved.masks, &planes)?, ..own },
             None => own,
         };
         Ok([own, halved])
     }
 
     /// How materials are cut out, by their `planes` of opacities.
-    fn masks(&mut self, masks: &[accel::coverage::Mask], planes: &[In<u8>]) -> Result<In<Mask>, RenderError> {
-        let record = |mask: &accel::coverage::Mask| Mask {
+    fn masks(&mut self, masks: &[accel::alpha_mask::Mask], planes: &[In<u8>]) -> Result<In<Mask>, RenderError> {
+        let record = |mask: &accel::alpha_mask::Mask| Mask {
             texels: planes[mask.plane],
             size: mask.size,
             wrap: mask.wrap.map(wrap),

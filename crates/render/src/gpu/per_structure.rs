@@ -4,7 +4,7 @@
 //! with such kernels is compiled twice:
 //!
 //! * where the tests cost an opaque scene more than 3 % of a stage's time (`DOUBLED`), once without and once with all of it: `<module>` is for
-//!   opaque scenes, `<module>_cut_out` for those with cut-outs or instances;
+//!   opaque scenes, `<module>_alpha_test` for those with cut-outs or instances;
 //! * elsewhere, `<module>` has the tests, behind a condition that is the same for all threads, and `<module>_instanced` is for scenes with instances.
 //!
 //! What that costs is in `bench/kernels/README.md`.
@@ -22,7 +22,7 @@ const DOUBLED: &[&str] = &["occluder_lists", "pixel_samples", "primary_rays", "s
 pub(crate) struct Modules {
     pub(crate) plain: &'static str,
     /// For scenes in which triangles are cut out, or that have instances; if doubled.
-    pub(crate) cut_out: &'static str,
+    pub(crate) alpha_test: &'static str,
     /// For scenes that have instances; if not.
     pub(crate) instanced: &'static str,
 }
@@ -33,7 +33,7 @@ impl Modules {
         let is_doubled = DOUBLED.contains(&self.plain);
         match scene.structure {
             Structure::InstancedBvh if !is_doubled => self.instanced,
-            _ if is_doubled && scene.cut_out => self.cut_out,
+            _ if is_doubled && scene.alpha_test => self.alpha_test,
             _ => self.plain,
         }
     }
@@ -44,7 +44,7 @@ macro_rules! modules {
     ($module:literal) => {
         $crate::gpu::Modules {
             plain: $module,
-            cut_out: concat!($module, "_cut_out"),
+            alpha_test: concat!($module, "_alpha_test"),
             instanced: concat!($module, "_instanced"),
         }
     };

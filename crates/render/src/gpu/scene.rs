@@ -8,7 +8,7 @@ use lightmesh_layout::constants::{
     BVH_STACK, GRID_FRAME_WORDS, MAX_HELD, RECENT_TRIANGLES, STACK_OF_INSTANCES, STACK_OF_ROUNDS, STACK_PER_LEVEL,
 };
 use lightmesh_layout::geometry::{
-    BruteForce, Bvh, BvhNode, Coverage, DVec3, Grid, Instanced, InstancedBvh, RayClamp, Triangle, Triangles, Vec3,
+    AlphaMask, BruteForce, Bvh, BvhNode, DVec3, Grid, Instanced, InstancedBvh, RayClamp, Triangle, Triangles, Vec3,
 };
 use lightmesh_layout::scene::{self as layout, EnvironmentLevel, Indices, Light, Scene};
 use lightmesh_layout::{DeviceType, In, Structure};
@@ -34,7 +34,7 @@ pub struct DeviceScene<R: Runtime> {
     pub(crate) record: Scene,
     pub(crate) structure: Structure,
     /// Whether any triangle is cut out, or there are instances.
-    pub(crate) cut_out: bool,
+    pub(crate) alpha_test: bool,
     /// The scene on the host.
     pub(crate) host: PreparedScene,
     /// What the record points to.
@@ -67,9 +67,9 @@ impl<R: Runtime> DeviceScene<R> {
     pub(crate) fn transmission_parts(&self) -> Option<TransmissionParts<DeviceScene<R>>> {
         let (on_host, parts) = (self.host.transmission_parts()?, self._geometry.transmission_parts.as_ref()?);
         let part = |part: &Scene, host: PreparedScene| {
-            let Scene { bvh, grid, brute_force, instanced, coverage, .. } = *part;
+            let Scene { bvh, grid, brute_force, instanced, alpha_mask, .. } = *part;
             DeviceScene {
-                record: Scene { bvh, grid, brute_force, instanced, coverage, ..self.record },
+                record: Scene { bvh, grid, brute_force, instanced, alpha_mask, ..self.record },
                 host,
                 ..self.clone()
             }
@@ -87,7 +87,7 @@ impl<R: Runtime> Clone for DeviceScene<R> {
         DeviceScene {
             record: self.record,
             structure: self.structure,
-            cut_out: self.cut_out,
+            alpha_test: self.alpha_test,
             host: self.host.clone(),
             _geometry: Arc::clone(&self._geometry),
             _lights: Arc::clone(&self._lights),
@@ -153,7 +153,7 @@ impl<R: Runtime> Cuda<R> {
         Ok(DeviceScene {
             record,
             structure: geometry.structure,
-            cut_out: scene.geometry.coverage.table().is_some() || geometry.structure == Structure::InstancedBvh,
+            alpha_test: scene.geometry.alpha_mask.table().is_some() || geometry.structure == Structure::InstancedBvh,
             host: scene.clone(),
             _geometry: geometry,
             _lights: Arc::new(upload.buffers),
@@ -306,19 +306,19 @@ impl<R: Runtime> Upload<'_, R> {
         record.object_starts = self.array("runs of objects", starts)?;
         record.objects = self.array("objects", objects)?;
         record.object_runs = starts.len() as u32;
-        let gi_occluders = prepared.transmission_parts.as_ref().map(|parts| &parts.gi_occluders.coverage);
-        let [coverage, halved] = self.coverage(&prepared.coverage, gi_occluders)?;
-        record.coverage = coverage;
-        let structure = self.structure(prepared, coverage, &mut record)?;
+        let gi_occluders = prepared.transmission_parts.as_ref().map(|parts| &parts.gi_occluders.alpha_mask);
+        let [alpha_mask, halved] = self.alpha_mask(&prepared.alpha_mask, gi_occluders)?;
+        record.alpha_mask = alpha_mask;
+        let structure = self.structure(prepared, alpha_mask, &mut record)?;
         let mut part = |prepared: &PreparedGeometry| {
             let mut record = record;
-            self.structure(prepared, coverage, &mut record).map(|_| record)
+            self.structure(prepared, alpha_mask, &mut record).map(|_| record)
         };
         let transmission_parts = match &prepared.transmission_parts {
             Some(TransmissionParts { blockers, transmissive, .. }) => Some(TransmissionParts {
                 blockers: part(blockers)?,
                 transmissive: part(transmissive)?,
-                gi_occluders: covered_by(halved, record),
+                gi_occluders: masked_by(halved, record),
             }),
             None => None,
         };
@@ -329,20 +329,20 @@ impl<R: Runtime> Upload<'_, R> {
     fn structure(
         &mut self,
         prepared: &PreparedGeometry,
-        coverage: Coverage,
+        alpha_mask: AlphaMask,
         record: &mut Scene,
     ) -> Result<Structure, RenderError> {
         Ok(match prepared.accelerator.kind() {
             AcceleratorKind::Bvh(bvh) if !bvh.instances().is_empty() => {
-                record.instanced = InstancedBvh { coverage, ..self.instanced_bvh(bvh)? };
+                record.instanced = InstancedBvh { alpha_mask, ..self.instanced_bvh(bvh)? };
                 Structure::InstancedBvh
             }
             AcceleratorKind::Bvh(bvh) => {
-                record.bvh = Bvh { coverage, ..self.bvh(bvh)? };
+                record.bvh = Bvh { alpha_mask, ..self.bvh(bvh)? };
                 Structure::Bvh
             }
-            AcceleratorKind::Grid(grid) if prepared.coverage.table().is_some() => {
-                record.bvh = Bvh { coverage, ..self.bvh(&accel::Bvh::new(&grid.held()))? };
+            AcceleratorKind::Grid(grid) if prepared.alpha_mask.table().is_some() => {
+                record.bvh = Bvh { alpha_mask, ..self.bvh(&accel::Bvh::new(&grid.held()))? };
                 Structure::Bvh
             }
             AcceleratorKind::Grid(grid) => {
@@ -350,7 +350,7 @@ impl<R: Runtime> Upload<'_, R> {
                 Structure::Grid
             }
             AcceleratorKind::BruteForce(all) => {
-                record.brute_force = BruteForce { coverage, ..self.brute_force(all)? };
+                record.brute_force = BruteForce { alpha_mask, ..self.brute_force(all)? };
                 Structure::BruteForce
             }
         })
@@ -403,11 +403,11 @@ impl<R: Runtime> Upload<'_, R> {
     }
 
     fn instanced_bvh(&mut self, bvh: &accel::Bvh) -> Result<InstancedBvh, RenderError> {
-        let Bvh { nodes, triangles, coverage, ray_clamp, node_count, depth } = self.bvh(bvh)?;
+        let Bvh { nodes, triangles, alpha_mask, ray_clamp, node_count, depth } = self.bvh(bvh)?;
         Ok(InstancedBvh {
             nodes,
             triangles,
-            coverage,
+            alpha_mask,
             instances: self.instances(bvh.instances())?,
             ray_clamp,
             node_count,
@@ -423,7 +423,7 @@ impl<R: Runtime> Upload<'_, R> {
         Ok(Bvh {
             nodes: self.array::<BvhNode>("BVH", bytemuck::cast_slice(nodes))?,
             triangles: self.triangles(bvh.triangles())?,
-            coverage: Coverage::zeroed(),
+            alpha_mask: AlphaMask::zeroed(),
             ray_clamp: ray_clamp(bvh.ray_clamp()),
             node_count: nodes.len() as u32,
             depth: bvh.depth() as u32,
@@ -448,7 +448,7 @@ impl<R: Runtime> Upload<'_, R> {
     fn brute_force(&mut self, all: &accel::BruteForce) -> Result<BruteForce, RenderError> {
         Ok(BruteForce {
             triangles: self.triangles(all.triangles())?,
-            coverage: Coverage::zeroed(),
+            alpha_mask: AlphaMask::zeroed(),
             ray_clamp: ray_clamp(all.ray_clamp()),
             count: all.triangles().len() as u32,
             spare: 0,
@@ -456,13 +456,13 @@ impl<R: Runtime> Upload<'_, R> {
     }
 }
 
-/// A scene cut out by another `coverage`.
-fn covered_by(coverage: Coverage, scene: Scene) -> Scene {
+/// A scene cut out by another `alpha_mask`.
+fn masked_by(alpha_mask: AlphaMask, scene: Scene) -> Scene {
     Scene {
-        bvh: Bvh { coverage, ..scene.bvh },
-        brute_force: BruteForce { coverage, ..scene.brute_force },
-        instanced: InstancedBvh { coverage, ..scene.instanced },
-        coverage,
+        bvh: Bvh { alpha_mask, ..scene.bvh },
+        brute_force: BruteForce { alpha_mask, ..scene.brute_force },
+        instanced: InstancedBvh { alpha_mask, ..scene.instanced },
+        alpha_mask,
         ..scene
     }
 }

@@ -1,7 +1,7 @@
 // What the sample of a pixel sees of an image of a material: twin of texel.rs.
 #pragma once
 
-#include "accel/coverage.cuh"
+#include "accel/alpha_mask.cuh"
 #include "cuda/warp.cuh"
 #include "footprint.cuh"
 #include "textures/lookup.cuh"
@@ -16,7 +16,7 @@ struct TintSources {
     const Texture *textures;
     const float *codes;
     const FacetShare *facet_table;
-    Coverage coverage;
+    AlphaMask alpha_mask;
 };
 
 // The ray that sees a surface point, or that of another sample of its pixel, and the cone around it.
@@ -64,7 +64,7 @@ DEVICE Vec3 texel_at(const TintSources &sources, unsigned number, const Sighting
 // Those of a scene.
 DEVICE TintSources tint_sources(const Scene &scene) {
     return {scene.triangles, scene.indices, scene.normals, scene.uvs, scene.colors, scene.textures, scene.codes,
-            scene.facet_table, scene.coverage};
+            scene.facet_table, scene.alpha_mask};
 }
 
 // What ray number `ray` goes along.

@@ -37,7 +37,7 @@ DEVICE Colors colors_at(const TintSources &sources, const Material &material, co
 
 // How opaque a surface of this material is at `hit`.
 DEVICE float opacity_at(const TintSources &sources, const Material &material, const Hit &hit) {
-    return material.blends ? opacity_at(sources.coverage, stored_triangle(sources.triangles, hit.triangle), hit.u, hit.v) : 1.0f;
+    return material.blends ? opacity_at(sources.alpha_mask, stored_triangle(sources.triangles, hit.triangle), hit.u, hit.v) : 1.0f;
 }
 
 // Sets `own` to the material with the coefficients that colours and an opacity give it.

@@ -181,7 +181,7 @@ pub(crate) fn transmittance_at(scene: &PreparedScene, ray: &Ray, hit: &Hit) -> V
 
 /// How opaque the surface is at `hit`.
 fn opacity(scene: &PreparedScene, hit: &Hit) -> f32 {
-    scene.geometry.coverage.opacity(&scene.geometry.triangles.at(hit.triangle), hit)
+    scene.geometry.alpha_mask.opacity(&scene.geometry.triangles.at(hit.triangle), hit)
 }
 
 /// The values of images at a surface point.

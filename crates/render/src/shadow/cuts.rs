@@ -1,14 +1,14 @@
 //! Triangles that are cut out, and samples in rows: which samples a triangle hides where there is any of it. Twin: `stopped_samples` in
 //! `occlusion.cuh`.
 //!
-//! Rows say which samples the whole triangle would hide; here each of these asks alone, with [`Coverage::stops`]. Lanes are taken apart: what
+//! Rows say which samples the whole triangle would hide; here each of these asks alone, with [`AlphaMask::stops`]. Lanes are taken apart: what
 //! is decided differs from sample to sample, and most triangles are opaque.
 
 use fearless_simd::prelude::*;
 use glam::Vec3;
 use lightmesh_layout::constants::{MAX_ROWS, MAX_WORDS};
 use lightmesh_layout::scene::SampleRows;
-use lightmesh_trace::accel::{Coverage, Triangle, Triangles};
+use lightmesh_trace::accel::{AlphaMask, Triangle, Triangles};
 use lightmesh_trace::simd::{Axes, LANES};
 
 use super::projected_light::ProjectedLight;
@@ -16,7 +16,7 @@ use super::projected_light::ProjectedLight;
 /// What is cut out of the triangles of eight lanes.
 #[derive(Clone, Copy)]
 pub struct Cuts<'a> {
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     /// The number of each lane's triangle; 0 if it is opaque.
     numbers: [u32; LANES],
 }
@@ -24,21 +24,21 @@ pub struct Cuts<'a> {
 impl<'a> Cuts<'a> {
     /// One triangle in all lanes; `None` if it is opaque.
     #[inline(always)]
-    pub fn splat(coverage: &'a Coverage, number: u32) -> Option<Cuts<'a>> {
-        (number != 0).then_some(Cuts { coverage, numbers: [number; LANES] })
+    pub fn splat(alpha_mask: &'a AlphaMask, number: u32) -> Option<Cuts<'a>> {
+        (number != 0).then_some(Cuts { alpha_mask, numbers: [number; LANES] })
     }
 
     /// Those of [gathered](super::occlusion::gathered) triangles; `None` if all are opaque.
     #[inline(always)]
-    pub(crate) fn gathered(coverage: &'a Coverage, triangles: &Triangles, indices: &[u32]) -> Option<Cuts<'a>> {
+    pub(crate) fn gathered(alpha_mask: &'a AlphaMask, triangles: &Triangles, indices: &[u32]) -> Option<Cuts<'a>> {
         let number = |lane: usize| triangles.at(indices[lane.min(indices.len() - 1)]).cut();
         let numbers = std::array::from_fn(number);
-        (numbers != [0; LANES]).then_some(Cuts { coverage, numbers })
+        (numbers != [0; LANES]).then_some(Cuts { alpha_mask, numbers })
     }
 
     /// The triangle of a lane.
     fn triangle(&self, from: &Lines, lane: usize) -> Triangle {
-        Triangle::new(from.corners.map(|corner| corner[lane]), 0).cut_out(self.numbers[lane])
+        Triangle::new(from.corners.map(|corner| corner[lane]), 0).alpha_tested(self.numbers[lane])
     }
 }
 
@@ -89,7 +89,7 @@ pub(super) fn keep_stopped(
                     row += 1;
                 }
                 let target = projected.scaled_sample(set, row, (bit - set.place[row]) as f32, offsets[row][lane]);
-                if !cuts.coverage.stops(&triangle, from.origin[lane], target) {
+                if !cuts.alpha_mask.stops(&triangle, from.origin[lane], target) {
                     samples[lane] &= !(1 << bit);
                 }
             }
@@ -103,7 +103,7 @@ pub(super) fn keep_stopped(
 pub(super) fn stopped_centers(cuts: &Cuts, from: &Lines, lanes: u32) -> u32 {
     let stops = |&lane: &usize| {
         let (origin, center) = (from.origin[lane], from.center[lane]);
-        lanes >> lane & 1 != 0 && cuts.coverage.stops(&cuts.triangle(from, lane), origin, center)
+        lanes >> lane & 1 != 0 && cuts.alpha_mask.stops(&cuts.triangle(from, lane), origin, center)
     };
     (0..LANES).filter(stops).fold(0, |all, lane| all | 1 << lane)
 }

@@ -1,7 +1,7 @@
 // Which samples of a light a triangle hides from a surface point: twin of occlusion.rs, bit by bit.
 #pragma once
 
-#include "accel/coverage.cuh"
+#include "accel/alpha_mask.cuh"
 #include "shadow/projected_light.cuh"
 
 // A triangle with what is the same for all surface points: three corners, and in their last words the normal.
@@ -163,10 +163,10 @@ DEVICE bool center_above_horizon(const SurfacePoint &point, const Sight &project
 // Whether a function is certainly negative on the whole emitter; positive if not `outer`.
 DEVICE bool never(const Linear &f, bool outer) { return (outer ? f.start : -f.start) < -range_of(f); }
 
-// A triangle by its parts, and where it is cut out. The number of its opacities, 0 if it is opaque, is only read with a coverage.
+// A triangle by its parts, and where it is cut out. The number of its opacities, 0 if it is opaque, is only read with an alpha mask.
 struct Hiding {
     const float4 *parts;
-    const Coverage *coverage;
+    const AlphaMask *alpha_mask;
     const unsigned *cut;
 };
 
@@ -187,7 +187,7 @@ struct Lines {
 
 // Those of some samples whose ray a triangle stops where it is not cut out.
 template <unsigned WORDS>
-COLD Samples<WORDS> stopped_samples(Coverage coverage, unsigned cut, Corners corners, Lines from, RowTable table,
+COLD Samples<WORDS> stopped_samples(AlphaMask alpha_mask, unsigned cut, Corners corners, Lines from, RowTable table,
                                     Samples<WORDS> samples) {
     if (cut == 0)
         return samples;
@@ -202,7 +202,7 @@ COLD Samples<WORDS> stopped_samples(Coverage coverage, unsigned cut, Corners cor
             for (unsigned rest = bits & __float_as_uint(own.z) << first; rest != 0; rest &= rest - 1) {
                 const unsigned bit = __ffs(rest) - 1;
                 const float x = ((float)(bit - first) - table.offsets[row * WARP]) / own.y;
-                if (!stops_cut(coverage, cut, corners, from.origin, from.center + x * from.along + own.x * from.across))
+                if (!stops_cut(alpha_mask, cut, corners, from.origin, from.center + x * from.along + own.x * from.across))
                     bits &= ~(1u << bit);
             }
         }
@@ -243,13 +243,13 @@ DEVICE void hide(const SurfacePoint &point, const Sight &projected, const Hiding
     } else {
         set_bits<WORDS, 3>(bounds, table, hidden);
     }
-    if (hiding.coverage != nullptr) {
+    if (hiding.alpha_mask != nullptr) {
         Samples<WORDS> all;
         UNROLL
         for (unsigned word = 0; word < WORDS; ++word)
             all.bits[word] = matters ? hidden[word] & seen[word] : 0;
         const Lines from = {point.origin, projected.center, projected.along, projected.across};
-        all = stopped_samples<WORDS>(*hiding.coverage, *hiding.cut, corners_of(triangle), from, table, all);
+        all = stopped_samples<WORDS>(*hiding.alpha_mask, *hiding.cut, corners_of(triangle), from, table, all);
         UNROLL
         for (unsigned word = 0; word < WORDS; ++word)
             hidden[word] = all.bits[word];
@@ -272,7 +272,7 @@ DEVICE bool hides_center(const SurfacePoint &point, const Sight &projected, cons
         most = fmaxf(most, f);
     }
     const bool hides = own.matters && (own.volume > 0.0f ? least >= 0.0f : most <= 0.0f);
-    if (!hides || hiding.coverage == nullptr || *hiding.cut == 0)
+    if (!hides || hiding.alpha_mask == nullptr || *hiding.cut == 0)
         return hides;
-    return stops_cut(*hiding.coverage, *hiding.cut, corners_of(triangle), point.origin, projected.center);
+    return stops_cut(*hiding.alpha_mask, *hiding.cut, corners_of(triangle), point.origin, projected.center);
 }

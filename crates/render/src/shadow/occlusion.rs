@@ -16,7 +16,7 @@
 //!   changes its sign if b and c change places. So triangles that share an edge have exactly the same bound there: no sample
 //!   slips through between them.
 //! * A triangle with no corner above the tangent plane hides nothing, nor one whose plane contains P.
-//! * A triangle that is [cut out](lightmesh_trace::accel::coverage) hides those of these samples whose ray meets a part of it that is there.
+//! * A triangle that is [cut out](lightmesh_trace::accel::alpha_mask) hides those of these samples whose ray meets a part of it that is there.
 //! * Products are fused into sums ([`fused_dot`]): the results are the same wherever they are evaluated, with half the instructions.
 //!
 //! Lanes are surface points, triangles, or both: the functions do not care.

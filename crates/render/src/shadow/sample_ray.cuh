@@ -45,9 +45,9 @@ DEVICE bool hides_sample(const SampleRay &ray, const Hiding &hiding) {
     cut(bounds, 3, beyond, outer);
     if (!(row_bits<4>(bounds, ray.row, ray.offset) >> ray.bit & 1))
         return false;
-    if (hiding.coverage == nullptr || *hiding.cut == 0)
+    if (hiding.alpha_mask == nullptr || *hiding.cut == 0)
         return true;
-    return stops_cut(*hiding.coverage, *hiding.cut, corners_of(triangle), ray.point.origin, target_of(ray));
+    return stops_cut(*hiding.alpha_mask, *hiding.cut, corners_of(triangle), ray.point.origin, target_of(ray));
 }
 
 template <class Structure, class Set>
@@ -56,7 +56,7 @@ DEVICE bool ask(SampleRay &ray, const Structure &structure, Set set) {
     while (take(set, triangle)) {
         const auto handle = triangle_at(structure, triangle);
         const Occluding own = occluding(load_corners(handle));
-        if (hides_sample(ray, Hiding{own.parts, coverage_of(structure), cut_of(handle)})) {
+        if (hides_sample(ray, Hiding{own.parts, alpha_mask_of(structure), cut_of(handle)})) {
             ray.hit = noted_place(structure, triangle);
             return false;
         }

@@ -7,7 +7,7 @@ use fearless_simd::Simd;
 use glam::Vec3;
 use lightmesh_layout::constants::{MIN_SLOPE, SHADOW_MARGIN, UNBOUNDED};
 use lightmesh_layout::scene::SampleRows;
-use lightmesh_trace::accel::{Bvh, Coverage, Triangle, Visitor};
+use lightmesh_trace::accel::{AlphaMask, Bvh, Triangle, Visitor};
 
 use super::projected_light::ProjectedLight;
 use crate::surface::SurfacePoint;
@@ -49,7 +49,7 @@ impl SampleRays {
             while rest != 0 && self.most != 0 {
                 let bit = rest.trailing_zeros();
                 let mut ray =
-                    SampleRay::new(bvh.coverage(), (point, projected, size), (set, row), bit - set.place[row]);
+                    SampleRay::new(bvh.alpha_mask(), (point, projected, size), (set, row), bit - set.place[row]);
                 if self.last.is_none_or(|last| ray.triangle(&last)) {
                     bvh.visit_segment(simd, (point.origin, ray.target / scale), slack, &mut ray);
                 }
@@ -70,7 +70,7 @@ impl SampleRays {
 
 /// A ray to one sample.
 struct SampleRay<'a> {
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     point: &'a SurfacePoint,
     projected: &'a ProjectedLight,
     /// The sample as seen from the point, scaled, and no less than any sample's coordinates.
@@ -92,7 +92,7 @@ struct SampleRay<'a> {
 impl<'a> SampleRay<'a> {
     #[inline(always)]
     fn new(
-        coverage: &'a Coverage,
+        alpha_mask: &'a AlphaMask,
         (point, projected, size): (&'a SurfacePoint, &'a ProjectedLight, Vec3),
         (set, row): (&SampleRows, usize),
         place: u32,
@@ -102,7 +102,7 @@ impl<'a> SampleRay<'a> {
         let count = set.count[row] as f32;
         let nodes = Cell::new(0);
         SampleRay {
-            coverage,
+            alpha_mask,
             point,
             projected,
             target,
@@ -166,7 +166,7 @@ impl Visitor for SampleRay<'_> {
     fn triangle(&mut self, triangle: &Triangle) -> bool {
         self.triangles += 1;
         let hidden =
-            self.is_hidden_by(triangle.corners()) && self.coverage.stops(triangle, self.point.origin, self.target);
+            self.is_hidden_by(triangle.corners()) && self.alpha_mask.stops(triangle, self.point.origin, self.target);
         if !hidden {
             return true;
         }

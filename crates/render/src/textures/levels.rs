@@ -62,9 +62,9 @@ impl AllLevels {
             let own = &mut all.by_texture[index][encoding as usize];
             if own.levels.is_empty() {
                 let needed = bytes_to_build(texture.size);
-                if encoding == Encoding::Color && is_cut_out(geometry, uses.texture) {
+                if encoding == Encoding::Color && is_alpha_tested(geometry, uses.texture) {
                     budget.check(2 * needed).map_err(|short| (index, short))?;
-                    *own = MipLevels::of_cut_out(texture);
+                    *own = MipLevels::of_alpha_test(texture);
                 } else {
                     budget.check(needed).map_err(|short| (index, short))?;
                     *own = MipLevels::new(texture, encoding);
@@ -99,7 +99,7 @@ impl MipLevels {
     }
 
     /// Those of a texture by whose alpha surfaces are cut out.
-    fn of_cut_out(texture: &Texture) -> MipLevels {
+    fn of_alpha_test(texture: &Texture) -> MipLevels {
         let alpha = |texel: [u8; 4]| f32::from(texel[3]) / f32::from(u8::MAX);
         let colors = lower(texture, |texel| alpha(texel) * Encoding::Color.linear(texel));
         let shares = lower(texture, |texel| Vec3::splat(alpha(texel)));
@@ -126,7 +126,7 @@ impl MipLevels {
 }
 
 /// Whether a material that shows a texture is cut out by its alpha.
-fn is_cut_out(geometry: &Geometry, texture: u32) -> bool {
+fn is_alpha_tested(geometry: &Geometry, texture: u32) -> bool {
     let shown = |uses: TextureUse| uses.texture == texture;
     geometry.materials.iter().any(|material| {
         let by_alpha = material.opacity.filter(|opacity| opacity.channel == OpacityChannel::Alpha);

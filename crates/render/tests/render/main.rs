@@ -1,9 +1,9 @@
 //! Whole images with known answers.
 
 mod adaptive;
+mod alpha_mask;
 mod antialiasing;
 mod convergence;
-mod coverage;
 mod crop;
 mod degenerate;
 mod determinism;

@@ -19,7 +19,7 @@ use lightmesh_scene::Bounds;
 use super::packet::{ClosestPacket, LANES, PacketShear, PacketVisitor};
 use super::ray_clamp::RayClamp;
 use super::triangle::largest_axis;
-use super::{Accelerator, AcceleratorKind, Coverage, Hit, Ray, Region, Triangles};
+use super::{Accelerator, AcceleratorKind, AlphaMask, Hit, Ray, Region, Triangles};
 use crate::simd::dispatch;
 
 /// Triangles of a beam; with more, packets take less time.
@@ -33,7 +33,7 @@ const LONGER: f32 = 1.0 / (1 << 16) as f32;
 pub struct Beams<'a> {
     accelerator: &'a dyn Accelerator,
     triangles: &'a Triangles,
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     ray_clamp: RayClamp,
     level: Level,
     found: Vec<u32>,
@@ -45,11 +45,11 @@ impl<'a> Beams<'a> {
     pub fn new(
         accelerator: &'a dyn Accelerator,
         triangles: &'a Triangles,
-        coverage: &'a Coverage,
+        alpha_mask: &'a AlphaMask,
         bounds: &Bounds,
     ) -> Beams<'a> {
         let (level, ray_clamp) = (Level::new(), RayClamp::new(bounds));
-        Beams { accelerator, triangles, coverage, ray_clamp, level, found: Vec::new(), left: Vec::new() }
+        Beams { accelerator, triangles, alpha_mask, ray_clamp, level, found: Vec::new(), left: Vec::new() }
     }
 
     /// The closest hits of `rays`, whose directions have unit length, cut into beams of `size` rays. `far` says how far those of a beam
@@ -61,8 +61,8 @@ impl<'a> Beams<'a> {
             let (first, far) = (beam * size, far(beam));
             if self.search(rays, far) {
                 let far = far.unwrap_or(f32::INFINITY);
-                let Beams { level, triangles, coverage, found, left, .. } = self;
-                let held = (*triangles, &found[..], *coverage);
+                let Beams { level, triangles, alpha_mask, found, left, .. } = self;
+                let held = (*triangles, &found[..], *alpha_mask);
                 dispatch!(*level, simd => test(simd, rays, held, far, (first, hits), left));
             } else {
                 self.left.extend((first..).zip(rays.iter().copied()));
@@ -110,14 +110,14 @@ impl<'a> Beams<'a> {
 fn test<S: Simd>(
     simd: S,
     rays: &[Ray],
-    (triangles, found, coverage): (&Triangles, &[u32], &Coverage),
+    (triangles, found, alpha_mask): (&Triangles, &[u32], &AlphaMask),
     far: f32,
     (first, hits): (usize, &mut [Hit]),
     left: &mut Vec<(usize, Ray)>,
 ) {
     for (group, rays) in rays.chunks(LANES).enumerate() {
         let start = group * LANES;
-        let Some(mut closest) = packet(simd, coverage, rays) else {
+        let Some(mut closest) = packet(simd, alpha_mask, rays) else {
             left.extend((first + start..).zip(rays.iter().copied()));
             continue;
         };
@@ -138,7 +138,7 @@ fn test<S: Simd>(
 
 /// Up to eight rays; `None` if their directions do not have their largest components on one axis.
 #[inline(always)]
-fn packet<'a, S: Simd>(simd: S, coverage: &'a Coverage, rays: &[Ray]) -> Option<ClosestPacket<'a, S>> {
+fn packet<'a, S: Simd>(simd: S, alpha_mask: &'a AlphaMask, rays: &[Ray]) -> Option<ClosestPacket<'a, S>> {
     let axis = largest_axis(rays[0].direction);
     let (mut origin, mut direction) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
     for lane in 0..LANES {
@@ -155,5 +155,5 @@ fn packet<'a, S: Simd>(simd: S, coverage: &'a Coverage, rays: &[Ray]) -> Option<
         [f32x8::from_slice(simd, &of[0]), f32x8::from_slice(simd, &of[1]), f32x8::from_slice(simd, &of[2])]
     };
     let shear = PacketShear::new(&axes(&origin), &axes(&direction), axis);
-    Some(ClosestPacket::new(simd, coverage, shear, f32x8::splat(simd, f32::INFINITY)))
+    Some(ClosestPacket::new(simd, alpha_mask, shear, f32x8::splat(simd, f32::INFINITY)))
 }

@@ -11,7 +11,7 @@ use super::ray_clamp::{ClampedRay, RayClamp};
 use super::region_filter::{ChunkSink, RegionFilter};
 use super::triangle::RayShear;
 use super::visit::{All, Visitor};
-use super::{Accelerator, AcceleratorKind, Coverage, Hit, Ray, Region, ShortSegments, Triangle};
+use super::{Accelerator, AcceleratorKind, AlphaMask, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
 
 /// A list of triangles, all of which are tested.
@@ -19,20 +19,20 @@ use crate::simd::dispatch;
 pub struct BruteForce {
     triangles: Arc<[Triangle]>,
     ray_clamp: RayClamp,
-    coverage: Coverage,
+    alpha_mask: AlphaMask,
 }
 
 impl BruteForce {
     /// Keeps the usable triangles, one of identical ones.
     pub fn new(triangles: &[Triangle]) -> BruteForce {
         let triangles: Arc<[_]> = deduplicate(triangles).into_iter().map(|at| triangles[at as usize]).collect();
-        BruteForce { ray_clamp: RayClamp::around(&triangles), triangles, coverage: Coverage::default() }
+        BruteForce { ray_clamp: RayClamp::around(&triangles), triangles, alpha_mask: AlphaMask::default() }
     }
 
     /// The opacities of triangles that are cut out.
     #[doc(hidden)]
-    pub fn with_coverage(self, coverage: &Coverage) -> BruteForce {
-        BruteForce { coverage: coverage.clone(), ..self }
+    pub fn with_alpha_mask(self, alpha_mask: &AlphaMask) -> BruteForce {
+        BruteForce { alpha_mask: alpha_mask.clone(), ..self }
     }
 
     /// The triangles held.
@@ -48,7 +48,7 @@ impl BruteForce {
     fn closest(&self, ray: &ClampedRay) -> Hit {
         let shear = RayShear::new(ray.origin, ray.direction);
         self.triangles.iter().fold(Hit::MISS, |best, triangle| match shear.hit(triangle, ray.t_max) {
-            Some(hit) if hit.beats(&best) && self.coverage.has(triangle, &hit) => hit,
+            Some(hit) if hit.beats(&best) && self.alpha_mask.has(triangle, &hit) => hit,
             _ => best,
         })
     }
@@ -56,7 +56,7 @@ impl BruteForce {
     fn any(&self, ray: &ClampedRay) -> bool {
         let shear = RayShear::new(ray.origin, ray.direction);
         let covers =
-            |triangle: &Triangle| shear.hit(triangle, ray.t_max).is_some_and(|hit| self.coverage.has(triangle, &hit));
+            |triangle: &Triangle| shear.hit(triangle, ray.t_max).is_some_and(|hit| self.alpha_mask.has(triangle, &hit));
         self.triangles.iter().any(covers)
     }
 }
@@ -72,7 +72,7 @@ impl Accelerator for BruteForce {
         let mut hits = Vec::new();
         for (number, ray) in rays.iter().enumerate() {
             let Some(near) = self.ray_clamp.ray(ray) else { continue };
-            let mut all = All::new(&near, &self.coverage, &mut hits);
+            let mut all = All::new(&near, &self.alpha_mask, &mut hits);
             self.triangles.iter().for_each(|triangle| {
                 all.triangle(triangle);
             });
@@ -94,8 +94,8 @@ impl Accelerator for BruteForce {
         dispatch!(Level::new(), simd => search(simd, &self.triangles, region, take));
     }
 
-    fn covered_by(&self, coverage: &Coverage) -> Box<dyn Accelerator> {
-        Box::new(self.clone().with_coverage(coverage))
+    fn masked_by(&self, alpha_mask: &AlphaMask) -> Box<dyn Accelerator> {
+        Box::new(self.clone().with_alpha_mask(alpha_mask))
     }
 
     fn name(&self) -> &'static str {

@@ -132,7 +132,7 @@ DEVICE Placed triangle_at(const InstancedBvh &bvh, unsigned place) {
 // A shape at one of its places, or the scene's own triangles if `instance` is null. Places are those in the structure's array.
 struct Part {
     const InstancedBvh &bvh;
-    const Coverage &coverage;
+    const AlphaMask &alpha_mask;
     const Instanced *instance;
 };
 

@@ -83,7 +83,7 @@ impl Instanced {
     #[inline(always)]
     pub(crate) fn triangle(&self, stored: &Triangle) -> Triangle {
         let corners = stored.corners().map(|corner| self.place.point(corner));
-        Triangle::new(corners, self.first + (stored.index() - self.stored)).cut_out(stored.cut())
+        Triangle::new(corners, self.first + (stored.index() - self.stored)).alpha_tested(stored.cut())
     }
 
     /// A ray in the shape's coordinates.

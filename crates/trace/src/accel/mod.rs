@@ -11,16 +11,16 @@
 //!   their box tests err on the side of testing, so that all three give the same bits.
 //! * Zero, negative-zero and subnormal direction components and far-away origins are ordinary input. A zero direction, a ray
 //!   that is not finite and a triangle that is not [usable](Triangle::is_usable) hit nothing.
-//! * Where a triangle is cut out (`coverage`) there is nothing to hit.
+//! * Where a triangle is cut out (`alpha_mask`) there is nothing to hit.
 //! * Of opaque triangles with identical corners only the one with the smallest index is held: neither hits nor shadows need the others.
 //!
 //! The structures are built here; devices hold copies ([`AcceleratorKind`]) and walk them with the code in the `.cuh` files next to the Rust
 //! ones, with the same promises. `walk.cuh` and `search.cuh` are the twins of the trait.
 
+pub mod alpha_mask;
 pub(crate) mod beam;
 mod brute_force;
 pub(crate) mod bvh;
-pub mod coverage;
 pub(crate) mod deduplicate;
 pub(crate) mod grid;
 mod instanced;
@@ -34,10 +34,10 @@ mod visit;
 use glam::Vec3;
 use lightmesh_scene::Bounds;
 
+pub use alpha_mask::AlphaMask;
 pub use beam::Beams;
 pub use brute_force::BruteForce;
 pub use bvh::{Bvh, BvhCost};
-pub use coverage::Coverage;
 pub use grid::geometry_hash;
 pub use grid::{Grid, GridError, GridFault, GridFileError, GridOptions, GridSaveError, Levels};
 pub use instanced::Triangles;
@@ -104,7 +104,7 @@ pub struct ShortSegments<'a> {
     pub slack: f32,
     /// Where triangles are cut out.
     #[doc(hidden)]
-    pub coverage: &'a Coverage,
+    pub alpha_mask: &'a AlphaMask,
 }
 
 impl ShortSegments<'_> {
@@ -122,7 +122,7 @@ impl ShortSegments<'_> {
         for triangle in triangles {
             let Some(occluder) = self.test.occluder(triangle.corners()) else { continue };
             for (blocked, &direction) in blocked.iter_mut().zip(self.directions) {
-                *blocked |= occluder.blocks(direction) && self.coverage.stops(triangle, self.test.origin, direction);
+                *blocked |= occluder.blocks(direction) && self.alpha_mask.stops(triangle, self.test.origin, direction);
             }
         }
     }
@@ -171,8 +171,8 @@ pub trait Accelerator: Send + Sync {
         found.dedup();
     }
 
-    /// The same structure over the same triangles, cut out by `coverage`; both share what they hold.
-    fn covered_by(&self, coverage: &Coverage) -> Box<dyn Accelerator>;
+    /// The same structure over the same triangles, cut out by `alpha_mask`; both share what they hold.
+    fn masked_by(&self, alpha_mask: &AlphaMask) -> Box<dyn Accelerator>;
 
     /// Its name in settings and statistics: `grid`, `bvh` or `brute-force`.
     fn name(&self) -> &'static str;

@@ -38,7 +38,7 @@ DEVICE bool ask(NearestHits &hits, const Structure &structure, Set set) {
         const bool full = hits.count == HITS_AT_ONCE;
         if (full && !comes_before(hits, structure, t, index, HITS_AT_ONCE - 1))
             continue;
-        if (!has_surface(coverage_of(structure), triangle_at(structure, triangle), weights))
+        if (!has_surface(alpha_mask_of(structure), triangle_at(structure, triangle), weights))
             continue;
         unsigned place = full ? HITS_AT_ONCE - 1 : hits.count++;
         for (; place > 0 && comes_before(hits, structure, t, index, place - 1); --place) {

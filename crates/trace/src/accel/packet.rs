@@ -6,7 +6,7 @@ use fearless_simd::{f32x8, f64x4, mask32x8, u32x8};
 
 use super::ray_clamp::ClampedRay;
 use super::visit::{Any, Closest};
-use super::{Coverage, Hit, Triangle};
+use super::{AlphaMask, Hit, Triangle};
 
 /// Rays in a packet.
 pub(super) const LANES: usize = 8;
@@ -138,7 +138,7 @@ pub(super) trait PacketVisitor<S: Simd> {
 /// Searches for the closest hits.
 #[derive(Clone, Copy)]
 pub(super) struct ClosestPacket<'a, S: Simd> {
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     shear: PacketShear<S>,
     t_max: f32x8<S>,
     limit: f32x8<S>,
@@ -150,11 +150,16 @@ pub(super) struct ClosestPacket<'a, S: Simd> {
 
 impl<'a, S: Simd> ClosestPacket<'a, S> {
     #[inline(always)]
-    pub(super) fn new(simd: S, coverage: &'a Coverage, shear: PacketShear<S>, t_max: f32x8<S>) -> ClosestPacket<'a, S> {
+    pub(super) fn new(
+        simd: S,
+        alpha_mask: &'a AlphaMask,
+        shear: PacketShear<S>,
+        t_max: f32x8<S>,
+    ) -> ClosestPacket<'a, S> {
         let zero = f32x8::splat(simd, 0.0);
         let t = f32x8::splat(simd, Hit::MISS.t);
         let triangle = u32x8::splat(simd, Hit::NONE);
-        ClosestPacket { coverage, shear, t_max, limit: t_max, t, u: zero, v: zero, triangle }
+        ClosestPacket { alpha_mask, shear, t_max, limit: t_max, t, u: zero, v: zero, triangle }
     }
 
     /// The closest hit of each ray.
@@ -186,7 +191,7 @@ impl<'a, S: Simd> PacketVisitor<S> for ClosestPacket<'a, S> {
         }
         let (u, v) = meeting.weights();
         if triangle.cut() != 0 {
-            better = self.coverage.covered_lanes(triangle.cut(), u.into(), v.into(), better);
+            better = self.alpha_mask.covered_lanes(triangle.cut(), u.into(), v.into(), better);
         }
         let better = mask32x8::from_bitmask(simd, u64::from(better));
         self.t = better.select(t, self.t);
@@ -209,7 +214,7 @@ impl<'a, S: Simd> PacketVisitor<S> for ClosestPacket<'a, S> {
     #[inline(always)]
     fn alone(&mut self, simd: S, lane: usize, near: &ClampedRay, walk: impl FnOnce(&mut Closest<'a>)) {
         let before = self.hits()[lane];
-        let mut single = Closest::from(near, self.coverage, before);
+        let mut single = Closest::from(near, self.alpha_mask, before);
         walk(&mut single);
         if single.best.triangle == before.triangle {
             return;
@@ -226,7 +231,7 @@ impl<'a, S: Simd> PacketVisitor<S> for ClosestPacket<'a, S> {
 /// Searches for any hits.
 #[derive(Clone, Copy)]
 pub(super) struct AnyPacket<'a, S: Simd> {
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     shear: PacketShear<S>,
     t_max: f32x8<S>,
     /// `t_max`; negative for a ray that has hit.
@@ -236,8 +241,8 @@ pub(super) struct AnyPacket<'a, S: Simd> {
 
 impl<'a, S: Simd> AnyPacket<'a, S> {
     #[inline(always)]
-    pub(super) fn new(coverage: &'a Coverage, shear: PacketShear<S>, t_max: f32x8<S>) -> AnyPacket<'a, S> {
-        AnyPacket { coverage, shear, t_max, limit: t_max, hit: 0 }
+    pub(super) fn new(alpha_mask: &'a AlphaMask, shear: PacketShear<S>, t_max: f32x8<S>) -> AnyPacket<'a, S> {
+        AnyPacket { alpha_mask, shear, t_max, limit: t_max, hit: 0 }
     }
 
     #[inline(always)]
@@ -258,7 +263,7 @@ impl<'a, S: Simd> PacketVisitor<S> for AnyPacket<'a, S> {
         let mut hit = meeting.met & inside.to_bitmask() as u32;
         if hit != 0 && triangle.cut() != 0 {
             let (u, v) = meeting.weights();
-            hit = self.coverage.covered_lanes(triangle.cut(), u.into(), v.into(), hit);
+            hit = self.alpha_mask.covered_lanes(triangle.cut(), u.into(), v.into(), hit);
         }
         if hit != 0 {
             self.mark(simd, hit);
@@ -277,7 +282,7 @@ impl<'a, S: Simd> PacketVisitor<S> for AnyPacket<'a, S> {
 
     #[inline(always)]
     fn alone(&mut self, simd: S, lane: usize, near: &ClampedRay, walk: impl FnOnce(&mut Any<'a>)) {
-        let mut single = Any::new(near, self.coverage);
+        let mut single = Any::new(near, self.alpha_mask);
         walk(&mut single);
         if single.hit {
             self.mark(simd, 1 << lane);

@@ -12,7 +12,7 @@ use lightmesh_scene::Bounds;
 use super::Hit;
 
 /// The corners of a triangle as the structures store them: three `float4`, the index in the mesh as bits of the first `w`, those of the second
-/// the number of a triangle that is cut out (`coverage`), and those of the third the number of an instance that a structure holds in its place.
+/// the number of a triangle that is cut out (`alpha_mask`), and those of the third the number of an instance that a structure holds in its place.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(16))]
 pub struct Triangle {
@@ -32,7 +32,7 @@ impl Triangle {
     #[must_use]
     #[doc(hidden)]
     #[inline]
-    pub fn cut_out(mut self, number: u32) -> Triangle {
+    pub fn alpha_tested(mut self, number: u32) -> Triangle {
         self.corners[1][3] = f32::from_bits(number);
         self
     }

@@ -6,7 +6,7 @@
 //     float limit(const Visitor &);                                                             // what lies beyond need not be tested
 #pragma once
 
-#include "accel/coverage.cuh"
+#include "accel/alpha_mask.cuh"
 
 // The triangles from `next` to before `end`.
 struct Run {
@@ -76,7 +76,7 @@ DEVICE bool ask(Closest &closest, const Structure &structure, Set set) {
         const bool wins = t < closest.limit || (t == closest.limit && closest.best != Hit::NONE &&
                                                 triangle_index(triangle_at(structure, triangle)) <
                                                     triangle_index(triangle_at(whole_of(structure), closest.best)));
-        if (t > 0.0f && wins && has_surface(coverage_of(structure), triangle_at(structure, triangle), weights)) {
+        if (t > 0.0f && wins && has_surface(alpha_mask_of(structure), triangle_at(structure, triangle), weights)) {
             closest.limit = t;
             closest.best = noted_place(structure, triangle);
         }
@@ -119,7 +119,7 @@ DEVICE bool ask(Any &any, const Structure &structure, Set set) {
         if (!weigh(corners, weights))
             continue;
         const float t = hit_distance(any.ray, corners, weights);
-        if (t > 0.0f && t < any.t_max && has_surface(coverage_of(structure), triangle_at(structure, triangle), weights)) {
+        if (t > 0.0f && t < any.t_max && has_surface(alpha_mask_of(structure), triangle_at(structure, triangle), weights)) {
             any.hit = noted_place(structure, triangle);
             return false;
         }
@@ -142,7 +142,7 @@ DEVICE bool ask(Short &segment, const Structure &structure, Set set) {
     while (take(set, triangle)) {
         const Corners corners = load_corners(triangle_at(structure, triangle));
         if (blocks_segment(segment.test, corners, segment.direction) &&
-            stops(coverage_of(structure), triangle_at(structure, triangle), corners, segment.test.origin, segment.direction)) {
+            stops(alpha_mask_of(structure), triangle_at(structure, triangle), corners, segment.test.origin, segment.direction)) {
             segment.blocked = true;
             return false;
         }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::ray_clamp::ClampedRay;
 use super::triangle::RayShear;
-use super::{Coverage, Hit, ShortSegments, ShortTest, Triangle};
+use super::{AlphaMask, Hit, ShortSegments, ShortTest, Triangle};
 
 /// Tests triangles and says how far it is still worth walking.
 pub trait Visitor {
@@ -17,7 +17,7 @@ pub trait Visitor {
 
 /// Searches for the closest hit.
 pub(super) struct Closest<'a> {
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     shear: RayShear,
     t_max: f32,
     limit: f32,
@@ -26,15 +26,15 @@ pub(super) struct Closest<'a> {
 
 impl<'a> Closest<'a> {
     #[inline(always)]
-    pub(super) fn new(ray: &ClampedRay, coverage: &'a Coverage) -> Closest<'a> {
+    pub(super) fn new(ray: &ClampedRay, alpha_mask: &'a AlphaMask) -> Closest<'a> {
         let shear = RayShear::new(ray.origin, ray.direction);
-        Closest { coverage, shear, t_max: ray.t_max, limit: ray.t_max, best: Hit::MISS }
+        Closest { alpha_mask, shear, t_max: ray.t_max, limit: ray.t_max, best: Hit::MISS }
     }
 
     /// Continues with a known hit.
     #[inline(always)]
-    pub(super) fn from(ray: &ClampedRay, coverage: &'a Coverage, best: Hit) -> Closest<'a> {
-        Closest { best, limit: ray.t_max.min(best.t), ..Closest::new(ray, coverage) }
+    pub(super) fn from(ray: &ClampedRay, alpha_mask: &'a AlphaMask, best: Hit) -> Closest<'a> {
+        Closest { best, limit: ray.t_max.min(best.t), ..Closest::new(ray, alpha_mask) }
     }
 }
 
@@ -43,7 +43,7 @@ impl Visitor for Closest<'_> {
     fn triangle(&mut self, triangle: &Triangle) -> bool {
         if let Some(hit) = self.shear.hit(triangle, self.t_max)
             && hit.beats(&self.best)
-            && self.coverage.has(triangle, &hit)
+            && self.alpha_mask.has(triangle, &hit)
         {
             self.best = hit;
             self.limit = hit.t;
@@ -59,7 +59,7 @@ impl Visitor for Closest<'_> {
 
 /// Collects all hits.
 pub(super) struct All<'a> {
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     shear: RayShear,
     t_max: f32,
     hits: &'a mut Vec<Hit>,
@@ -68,9 +68,9 @@ pub(super) struct All<'a> {
 impl<'a> All<'a> {
     /// They take the place of what is in `hits`.
     #[inline(always)]
-    pub(super) fn new(ray: &ClampedRay, coverage: &'a Coverage, hits: &'a mut Vec<Hit>) -> All<'a> {
+    pub(super) fn new(ray: &ClampedRay, alpha_mask: &'a AlphaMask, hits: &'a mut Vec<Hit>) -> All<'a> {
         hits.clear();
-        All { coverage, shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hits }
+        All { alpha_mask, shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hits }
     }
 
     /// Hands over the hits of `ray`, each once and in order, if there are any.
@@ -91,7 +91,7 @@ impl Visitor for All<'_> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
         if let Some(hit) = self.shear.hit(triangle, self.t_max)
-            && self.coverage.has(triangle, &hit)
+            && self.alpha_mask.has(triangle, &hit)
         {
             self.hits.push(hit);
         }
@@ -106,7 +106,7 @@ impl Visitor for All<'_> {
 
 /// Searches for any hit.
 pub(super) struct Any<'a> {
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     shear: RayShear,
     t_max: f32,
     pub(super) hit: bool,
@@ -114,15 +114,15 @@ pub(super) struct Any<'a> {
 
 impl<'a> Any<'a> {
     #[inline(always)]
-    pub(super) fn new(ray: &ClampedRay, coverage: &'a Coverage) -> Any<'a> {
-        Any { coverage, shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hit: false }
+    pub(super) fn new(ray: &ClampedRay, alpha_mask: &'a AlphaMask) -> Any<'a> {
+        Any { alpha_mask, shear: RayShear::new(ray.origin, ray.direction), t_max: ray.t_max, hit: false }
     }
 }
 
 impl Visitor for Any<'_> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle) -> bool {
-        self.hit = self.shear.hit(triangle, self.t_max).is_some_and(|hit| self.coverage.has(triangle, &hit));
+        self.hit = self.shear.hit(triangle, self.t_max).is_some_and(|hit| self.alpha_mask.has(triangle, &hit));
         !self.hit
     }
 
@@ -134,7 +134,7 @@ impl Visitor for Any<'_> {
 
 /// Searches for a triangle that blocks one short segment.
 pub(super) struct Short<'a> {
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
     test: &'a ShortTest,
     direction: Vec3,
     pub(super) blocked: bool,
@@ -143,7 +143,7 @@ pub(super) struct Short<'a> {
 impl<'a> Short<'a> {
     #[inline(always)]
     pub(super) fn new(segments: &'a ShortSegments, direction: Vec3) -> Short<'a> {
-        Short { coverage: segments.coverage, test: &segments.test, direction, blocked: false }
+        Short { alpha_mask: segments.alpha_mask, test: &segments.test, direction, blocked: false }
     }
 }
 
@@ -152,7 +152,7 @@ impl Visitor for Short<'_> {
     fn triangle(&mut self, triangle: &Triangle) -> bool {
         let occluder = self.test.occluder(triangle.corners());
         self.blocked = occluder.is_some_and(|occluder| occluder.blocks(self.direction))
-            && self.coverage.stops(triangle, self.test.origin, self.direction);
+            && self.alpha_mask.stops(triangle, self.test.origin, self.direction);
         !self.blocked
     }
 

@@ -3,7 +3,7 @@
 // 1. `first_rays_*`: one ray from each surface point to each light, one thread per ray.
 // 2. `find_open`: where neighbours agree, the share is theirs; elsewhere it is negative for now. `list_open`: where that is.
 // 3. `open_rays_*`: a ray to each sample from there, one thread per surface point and light.
-#define CUT_OUTS 1
+#define ALPHA_TEST 1
 #ifndef INSTANCES
 // Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0

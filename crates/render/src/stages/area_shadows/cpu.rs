@@ -68,7 +68,7 @@ fn share<S: Simd>(
     asked: &mut u64,
 ) -> f32 {
     let projected_lights = ProjectedLights::splat(simd, point, projected);
-    let PreparedGeometry { triangles, coverage, .. } = &*wave.scene.geometry;
+    let PreparedGeometry { triangles, alpha_mask, .. } = &*wave.scene.geometry;
     if emitter.is_point() {
         if projected_lights.center_above_horizon(simd).to_bitmask() & 1 == 0 {
             return 0.0;
@@ -76,7 +76,7 @@ fn share<S: Simd>(
         *asked += 1;
         search(wave, emitter, point, found);
         let hidden = |indices| {
-            let held = (gathered(simd, triangles, indices), Cuts::gathered(coverage, triangles, indices));
+            let held = (gathered(simd, triangles, indices), Cuts::gathered(alpha_mask, triangles, indices));
             projected_lights.hides_center(simd, held, 0xff) != 0
         };
         return emitter.share(u32::from(!found.chunks(LANES).any(hidden)));
@@ -97,7 +97,7 @@ fn share<S: Simd>(
             searched = true;
         }
         for indices in found.chunks(LANES) {
-            let held = (gathered(simd, triangles, indices), Cuts::gathered(coverage, triangles, indices));
+            let held = (gathered(simd, triangles, indices), Cuts::gathered(alpha_mask, triangles, indices));
             projected_lights.hide(simd, held, (set, &offsets), 0xff, &mut bits);
         }
         let left = words(&bits, set).map(u32::count_ones).sum::<u32>();

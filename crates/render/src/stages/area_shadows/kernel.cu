@@ -1,6 +1,6 @@
 // The reference on a CUDA device: twin of cpu.rs. A warp takes 32 surface points, one after the other; lanes are triangles.
 // `area_shadows_N_*`: samples in up to N words of bits.
-#define CUT_OUTS 1
+#define ALPHA_TEST 1
 #ifndef INSTANCES
 // Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0
@@ -27,9 +27,9 @@ DEVICE Sight broadcast(const Sight &projected, unsigned lane) {
 // What a lane's triangle, if it has one, leaves of the samples.
 template <unsigned WORDS, class Handle>
 DEVICE void test_triangle(const SurfacePoint &point, const Sight &projected, Shape shape, const RowTable &table,
-                          const Coverage *coverage, const Handle &triangle, bool has, Seen<WORDS> &seen) {
+                          const AlphaMask *alpha_mask, const Handle &triangle, bool has, Seen<WORDS> &seen) {
     const Occluding own = occluding(load_corners(triangle));
-    const Hiding hiding = {own.parts, coverage, cut_of(triangle)};
+    const Hiding hiding = {own.parts, alpha_mask, cut_of(triangle)};
     if (shape == SHAPE_POINT)
         seen.bits[0] &= has && hides_center(point, projected, hiding) ? 0 : 1;
     else
@@ -54,7 +54,7 @@ DEVICE void test_point(const Shadows &args, const Structure &structure, const Li
         count -= taken;
         if (taken != 0) {
             const unsigned place = found[count + (lane < taken ? lane : 0)];
-            test_triangle<WORDS>(point, projected, shape, table, coverage_of(structure), triangle_at(structure, place),
+            test_triangle<WORDS>(point, projected, shape, table, alpha_mask_of(structure), triangle_at(structure, place),
                                  lane < taken, seen);
         }
         __syncwarp();

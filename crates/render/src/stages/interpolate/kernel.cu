@@ -1,7 +1,7 @@
 // Step 5, first half, on a CUDA device: the weighted mean of what a surface point's light points see. Formula (3).
 //
 // `interpolate`: one warp per item; `fallback_*`: long tests of surface points without usable light points.
-#define CUT_OUTS 1
+#define ALPHA_TEST 1
 #ifndef INSTANCES
 // Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0

@@ -1,5 +1,5 @@
 // Gathered light on a CUDA device, the steps that ask an acceleration structure: see mod.rs. Launched by cuda.rs.
-#define CUT_OUTS 1
+#define ALPHA_TEST 1
 #ifndef INSTANCES
 // Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0

@@ -1,5 +1,5 @@
 // Step 4 on a CUDA device: which lights does each light point see? Twin of cpu.rs, one thread per light point.
-#define CUT_OUTS 1
+#define ALPHA_TEST 1
 #ifndef INSTANCES
 // Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0

@@ -170,7 +170,7 @@ impl<S: Simd> Group<S> {
                 let next = if dark != 0 { dark.trailing_zeros() } else { kept.trailing_zeros() };
                 (dark, kept) = (dark & !(1 << next), kept & !(1 << next));
                 let number = first + next as usize;
-                let cuts = Cuts::splat(&view.wave.scene.geometry.coverage, candidates.cut(number));
+                let cuts = Cuts::splat(&view.wave.scene.geometry.alpha_mask, candidates.cut(number));
                 let held = (candidates.splat(simd, number), cuts);
                 match view.set {
                     Some(set) => {

@@ -141,13 +141,13 @@ DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemProjection &item, unsigned 
 }
 
 // 4. What candidates hide, until nothing is left. Returns whether anything is. `cuts` are the numbers of their opacities, 0 for those that are
-// opaque, with a coverage.
+// opaque, with an alpha mask.
 template <unsigned WORDS>
-DEVICE bool test_candidates(const ItemProjection &item, const RowTable &table, const float4 *candidates, const Coverage *coverage,
+DEVICE bool test_candidates(const ItemProjection &item, const RowTable &table, const float4 *candidates, const AlphaMask *alpha_mask,
                             const unsigned *cuts, unsigned count, Seen<WORDS> &seen) {
     ROLLED
     for (unsigned k = 0; k < count; ++k) {
-        const Hiding triangle = {candidates + OCCLUDER_PARTS * k, coverage, cuts + k};
+        const Hiding triangle = {candidates + OCCLUDER_PARTS * k, alpha_mask, cuts + k};
         if (item.shape == SHAPE_POINT)
             seen.bits[0] &= hides_center(item.point, item.projected, triangle) ? 0 : 1;
         else
@@ -182,9 +182,9 @@ DEVICE bool test_found(const Shadows &args, ItemProjection &item, unsigned light
     look_at_rows(args, item, light, set, table);
     __syncwarp();
     // The numbers of opacities take the places of the triangles, which have been read.
-    const Coverage *coverage = coverage_of(structure);
+    const AlphaMask *alpha_mask = alpha_mask_of(structure);
     unsigned cut = 0;
-    if (coverage != nullptr) {
+    if (alpha_mask != nullptr) {
         if (choice != DROPPED)
             cut = triangle_cut(triangle_at(structure, memory.found[first + lane]));
         __syncwarp();
@@ -194,11 +194,11 @@ DEVICE bool test_found(const Shadows &args, ItemProjection &item, unsigned light
         UNROLL
         for (unsigned part = 0; part < OCCLUDER_PARTS; ++part)
             memory.candidates[OCCLUDER_PARTS * place + part] = own.parts[part];
-        if (coverage != nullptr)
+        if (alpha_mask != nullptr)
             memory.found[first + place] = cut;
     }
     __syncwarp();
-    return test_candidates(item, table, memory.candidates, coverage, memory.found + first, tested, seen);
+    return test_candidates(item, table, memory.candidates, alpha_mask, memory.found + first, tested, seen);
 }
 
 // 5. Whether rays to the samples still seen cost less than going on, if candidates go on hiding samples as those have that `spent` so much. The

@@ -2,8 +2,8 @@
 //
 // `find_starts_*`: where searches start, a warp for each tile and light. `shadows_N_*`: samples in up to N words of bits, by warps that
 // take items until none is left.
-#ifndef CUT_OUTS
-// Scenes with cut-outs or instances use the module with CUT_OUTS.
+#ifndef ALPHA_TEST
+// Scenes with cut-outs or instances use the module with ALPHA_TEST.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

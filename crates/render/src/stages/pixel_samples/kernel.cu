@@ -1,6 +1,6 @@
 // The samples of pixels on a CUDA device: twin of cpu.rs, one thread per sample.
-#ifndef CUT_OUTS
-// Scenes with cut-outs or instances use the module with CUT_OUTS.
+#ifndef ALPHA_TEST
+// Scenes with cut-outs or instances use the module with ALPHA_TEST.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

@@ -1,6 +1,6 @@
 // Step 1 on a CUDA device: what does each ray see? Twin of cpu.rs, one thread per ray.
-#ifndef CUT_OUTS
-// Scenes with cut-outs or instances use the module with CUT_OUTS.
+#ifndef ALPHA_TEST
+// Scenes with cut-outs or instances use the module with ALPHA_TEST.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

@@ -1,7 +1,7 @@
 // Shadow rays on a CUDA device: twin of cpu.rs, one thread per surface point.
 //
 // `shadow_rays_*`: one ray to the centre of each light; `sample_rays_*`: one to each sample of a light.
-#define CUT_OUTS 1
+#define ALPHA_TEST 1
 #ifndef INSTANCES
 // Scenes with instances use the module with INSTANCES.
 #define INSTANCES 0

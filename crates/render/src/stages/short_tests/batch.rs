@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
-use lightmesh_trace::accel::{Coverage, Triangle};
+use lightmesh_trace::accel::{AlphaMask, Triangle};
 use lightmesh_trace::simd::{Axes, LANES, cross, difference, dot, dot_along_x, scaled, splat};
 
 use super::MaskCounts;
@@ -51,7 +51,7 @@ impl Batch {
         simd: S,
         mesh: &LightMesh,
         points: &CellPoints,
-        (triangles, coverage): (&CellOccluders, &Coverage),
+        (triangles, alpha_mask): (&CellOccluders, &AlphaMask),
         masks: &mut [u32],
     ) -> MaskCounts {
         // 1, 2. The half-balls.
@@ -62,7 +62,7 @@ impl Batch {
         for candidate in &triangles.candidates {
             if let Some((occluders, lanes)) = self.occluders(simd, mesh, &candidate.triangle.corners()) {
                 tested |= lanes;
-                let cut = Cut { triangle: &candidate.triangle, coverage };
+                let cut = Cut { triangle: &candidate.triangle, alpha_mask };
                 self.clear_blocked(simd, points, triangles.rows(candidate), (&occluders, cut), lanes);
             }
         }
@@ -177,7 +177,7 @@ impl Batch {
     fn stopped(&self, cut: Cut, light_point: Vec3, lanes: u8) -> u8 {
         let stops = |lane: &usize| {
             let origin = Vec3::from(self.origin.map(|axis| axis[*lane]));
-            lanes >> lane & 1 != 0 && cut.coverage.stops(cut.triangle, origin, light_point - origin)
+            lanes >> lane & 1 != 0 && cut.alpha_mask.stops(cut.triangle, origin, light_point - origin)
         };
         (0..LANES).filter(stops).fold(0, |all, lane| all | 1 << lane)
     }
@@ -215,7 +215,7 @@ impl Batch {
 #[derive(Clone, Copy)]
 struct Cut<'a> {
     triangle: &'a Triangle,
-    coverage: &'a Coverage,
+    alpha_mask: &'a AlphaMask,
 }
 
 /// A triangle as seen from eight origins.

@@ -31,7 +31,7 @@ DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, c
         unsigned count = min(found, WARP);
         found -= count;
         const unsigned rows = choose_candidates(mesh, item, structure, memory, found, count);
-        asked |= test_candidates(args, coverage_of(structure), item, lane, memory, rows);
+        asked |= test_candidates(args, alpha_mask_of(structure), item, lane, memory, rows);
         __syncwarp();
     }
     return asked;

@@ -122,7 +122,7 @@ DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, c
         candidate.corners[2] = float4{c.x, c.y, c.z, x.high};
         candidate.span_yz = float4{y.low, y.high, z.low, z.high};
         candidate.inverse_yz = float4{1.0f / y.low, 1.0f / y.high, 1.0f / z.low, 1.0f / z.high};
-        const unsigned cut = coverage_of(structure) != nullptr ? triangle_cut(triangle_at(structure, memory.found[first + lane])) : 0;
+        const unsigned cut = alpha_mask_of(structure) != nullptr ? triangle_cut(triangle_at(structure, memory.found[first + lane])) : 0;
         candidate.most =
             float4{most, 1.0f / (float)(box_bound(box, 3) - box_bound(box, 2) + 1), __uint_as_float(cut), 0.0f};
     }

@@ -67,7 +67,7 @@ impl Run<'_> {
         let mut batch = Batch::new(self.mesh);
         let mut counts = MaskCounts::default();
         let mut surface_points = Vec::new();
-        let coverage = &self.wave.scene.geometry.coverage;
+        let alpha_mask = &self.wave.scene.geometry.alpha_mask;
         let mut rest = bits;
         for group in run {
             let cell = point_of(self.cells.cell(group));
@@ -78,7 +78,7 @@ impl Run<'_> {
             for lanes in surface_points.chunks(LANES) {
                 let (masks, tail) = rest.split_at_mut(lanes.len() * words);
                 batch.fill(lanes);
-                counts = counts + batch.masks(simd, self.mesh, &points, (&occluders, coverage), masks);
+                counts = counts + batch.masks(simd, self.mesh, &points, (&occluders, alpha_mask), masks);
                 rest = tail;
             }
         }

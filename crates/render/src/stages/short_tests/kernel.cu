@@ -3,8 +3,8 @@
 // 1. `short_tests_by_cell_*`: twin of cells.rs and batch.rs, one warp per item.
 // 2. `half_balls_of_items`, `short_tests_plain_*`: twin of plain.rs, the reference: every segment walks through the
 //    acceleration structure.
-#ifndef CUT_OUTS
-// Scenes with cut-outs or instances use the module with CUT_OUTS.
+#ifndef ALPHA_TEST
+// Scenes with cut-outs or instances use the module with ALPHA_TEST.
 #define INSTANCES 0
 #endif
 #include "cuda/prelude.cuh"

@@ -42,7 +42,7 @@ impl Scratch {
         blocked.resize(bits.len(), false);
         let test = ShortTest { origin: point.origin, normal: point.normal, edge_on: mesh.edge_on() };
         let geometry = &scene.geometry;
-        let segments = ShortSegments { test, directions, slack: mesh.slack(), coverage: &geometry.coverage };
+        let segments = ShortSegments { test, directions, slack: mesh.slack(), alpha_mask: &geometry.alpha_mask };
         geometry.accelerator.short_segments(&segments, blocked);
         for (&bit, _) in bits.iter().zip(blocked.iter()).filter(|(_, blocked)| **blocked) {
             mask[bit / 32] &= !(1 << (bit % 32));

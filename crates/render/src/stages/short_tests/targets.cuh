@@ -2,7 +2,7 @@
 // for all, as in batch.rs.
 #pragma once
 
-#include "accel/coverage.cuh"
+#include "accel/alpha_mask.cuh"
 #include "light_mesh/template.cuh"
 #include "stages/short_tests/memory.cuh"
 #include "stages/short_tests/span.cuh"
@@ -107,18 +107,18 @@ DEVICE bool is_edge_on(const LightMesh &mesh, const Candidate &candidate, const 
 }
 
 // Those of `lanes` whose segments along `d` a candidate stops where it is not cut out.
-DEVICE unsigned stopped_lanes(const Coverage &coverage, const Candidate &candidate, const ItemLane &lane, Vec3 d, unsigned lanes) {
+DEVICE unsigned stopped_lanes(const AlphaMask &alpha_mask, const Candidate &candidate, const ItemLane &lane, Vec3 d, unsigned lanes) {
     const unsigned cut = __float_as_uint(candidate.most.z);
     if (cut == 0)
         return lanes;
     const Corners corners = {corner_of(candidate.corners[0]), corner_of(candidate.corners[1]), corner_of(candidate.corners[2])};
     const bool own = lanes >> lane_of_thread() & 1;
-    return __ballot_sync(ALL_LANES, own && stops_cut(coverage, cut, corners, lane.point.origin, d));
+    return __ballot_sync(ALL_LANES, own && stops_cut(alpha_mask, cut, corners, lane.point.origin, d));
 }
 
 // 3. d. Clears the light points that the candidates hide from the lanes. Targets of one candidate are consecutive, and the last is
 // followed by one of no candidate. Returns whether the lane tested a triangle.
-DEVICE bool clear_blocked(const ShortTests &args, const Coverage *coverage, const ItemLane &lane, const CellMemory &memory) {
+DEVICE bool clear_blocked(const ShortTests &args, const AlphaMask *alpha_mask, const ItemLane &lane, const CellMemory &memory) {
     bool asked = false;
     Target target = memory.targets[0];
     for (unsigned i = 0; __float_as_uint(target.w) != NO_TARGET;) {
@@ -141,8 +141,8 @@ DEVICE bool clear_blocked(const ShortTests &args, const Coverage *coverage, cons
                 blocked &= lanes;
                 edges_known = true;
             }
-            if (coverage != nullptr)
-                blocked = stopped_lanes(*coverage, candidate, lane, d, blocked);
+            if (alpha_mask != nullptr)
+                blocked = stopped_lanes(*alpha_mask, candidate, lane, d, blocked);
             if (lane_of_thread() == 0)
                 memory.seen[point] &= ~blocked;
         } while (__float_as_uint(target.w) >> 16 == current);
@@ -153,7 +153,7 @@ DEVICE bool clear_blocked(const ShortTests &args, const Coverage *coverage, cons
 
 // 3. c. Lanes process the rows of light points that the candidates reach, and list the points that may be hidden; the warp tests
 // them. `rows` is the number of rows of the lane's candidate.
-DEVICE bool test_candidates(const ShortTests &args, const Coverage *coverage, const CellItem &item, const ItemLane &own,
+DEVICE bool test_candidates(const ShortTests &args, const AlphaMask *alpha_mask, const CellItem &item, const ItemLane &own,
                             const CellMemory &memory, unsigned rows) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
@@ -194,7 +194,7 @@ DEVICE bool test_candidates(const ShortTests &args, const Coverage *coverage, co
             }
             __syncwarp();
             filter_targets(mesh, item, memory, listed);
-            asked |= clear_blocked(args, coverage, own, memory);
+            asked |= clear_blocked(args, alpha_mask, own, memory);
         }
     }
     return asked;

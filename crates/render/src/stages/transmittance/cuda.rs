@@ -13,7 +13,7 @@ use crate::shadow::launch::SampleSets;
 
 /// One for all scenes: see the kernel.
 const KERNEL: PerStructure = PerStructure {
-    modules: Modules { plain: "transmittance", cut_out: "transmittance", instanced: "transmittance" },
+    modules: Modules { plain: "transmittance", alpha_test: "transmittance", instanced: "transmittance" },
     names: lightmesh_layout::names_per_structure!("transmittance"),
 };
 

@@ -1,6 +1,6 @@
 // Transmittance on a CUDA device: twin of cpu.rs, one thread per surface point. Whatever lets light through has entries among the triangles
 // that are cut out.
-#define CUT_OUTS 1
+#define ALPHA_TEST 1
 #include "cuda/prelude.cuh"
 
 #include "accel/nearest.cuh"
@@ -26,7 +26,7 @@ DEVICE Vec3 transmittance_at(const Transmittance &args, const Ray &ray, const Hi
     const Scene &scene = args.shadows.scene;
     const Triangle *triangle = stored_triangle(args.triangles, hit.triangle);
     const Material &material = scene.materials[material_index(scene, args.triangles, hit.triangle)];
-    const Vec3 through = (1.0f - opacity_at(scene.coverage, triangle, hit.u, hit.v)) * material.transmittance;
+    const Vec3 through = (1.0f - opacity_at(scene.alpha_mask, triangle, hit.u, hit.v)) * material.transmittance;
     if (material.ior == 0.0f)
         return through;
     return left_by_glass(args.triangles, args.normals, scene.indices, &material, ray, hit) * through;

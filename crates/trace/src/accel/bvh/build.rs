@@ -25,7 +25,7 @@ use rayon::prelude::*;
 use super::tree::{Bvh, Node};
 use crate::accel::deduplicate::deduplicate;
 use crate::accel::ray_clamp::{self, RayClamp};
-use crate::accel::{Coverage, Instanced, ShapeTree, Triangle};
+use crate::accel::{AlphaMask, Instanced, ShapeTree, Triangle};
 pub use work::{LEVELS, Work};
 
 /// Most triangles in a leaf: the node format has room for three.
@@ -41,7 +41,7 @@ pub(super) fn build(triangles: &[Triangle]) -> Bvh {
         shapes: Arc::default(),
         instances: Arc::default(),
         shape_depth: 0,
-        coverage: Coverage::default(),
+        alpha_mask: AlphaMask::default(),
         level: Level::new(),
     }
 }
@@ -103,7 +103,7 @@ pub(super) fn build_levels(own: &[Triangle], stored: &[Triangle], instances: &[I
         shapes: shapes.into_iter().zip(trees).collect(),
         instances: instances.into(),
         shape_depth,
-        coverage: Coverage::default(),
+        alpha_mask: AlphaMask::default(),
         level: Level::new(),
     }
 }

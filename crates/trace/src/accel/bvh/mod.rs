@@ -21,7 +21,7 @@ use lightmesh_scene::Instance;
 pub use cost::BvhCost;
 pub use tree::Bvh;
 
-use super::{Accelerator, AcceleratorKind, ChunkSink, Coverage, Hit, Ray, Region, ShortSegments, Triangle, Visitor};
+use super::{Accelerator, AcceleratorKind, AlphaMask, ChunkSink, Hit, Ray, Region, ShortSegments, Triangle, Visitor};
 use crate::simd::dispatch;
 
 impl Bvh {
@@ -81,8 +81,8 @@ impl Accelerator for Bvh {
         dispatch!(self.level, simd => search::search(simd, self, region, take));
     }
 
-    fn covered_by(&self, coverage: &Coverage) -> Box<dyn Accelerator> {
-        Box::new(self.clone().with_coverage(coverage))
+    fn masked_by(&self, alpha_mask: &AlphaMask) -> Box<dyn Accelerator> {
+        Box::new(self.clone().with_alpha_mask(alpha_mask))
     }
 
     fn name(&self) -> &'static str {

@@ -214,7 +214,7 @@ DEVICE void next_triangles(const InstancedBvh &bvh, const Region<RegionShape> &r
         owned = search.height;
         warp_append(enters, held, search.owners, owned);
         warp_append(enters, enters ? __ldg(&bvh.instances[held - 1].root) : 0, search.stack, search.height);
-        const unsigned place = has ? noted_place(Part{bvh, bvh.coverage, instance}, first + i) : 0;
+        const unsigned place = has ? noted_place(Part{bvh, bvh.alpha_mask, instance}, first + i) : 0;
         filter_by_region<FILTERED>(region, Placed{stored, instance}, has && held == 0, place, found, count);
     }
     __syncwarp();

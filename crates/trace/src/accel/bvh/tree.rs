@@ -8,7 +8,7 @@ use glam::Vec3;
 pub(super) use obvhs::cwbvh::node::CwBvhNode as Node;
 
 use crate::accel::ray_clamp::RayClamp;
-use crate::accel::{Coverage, Instanced, ShapeTree, Triangle};
+use crate::accel::{AlphaMask, Instanced, ShapeTree, Triangle};
 
 /// A compressed wide bounding volume hierarchy; clones share it.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ pub struct Bvh {
     /// The most levels of a shape's tree.
     pub(super) shape_depth: usize,
     pub(super) ray_clamp: RayClamp,
-    pub(super) coverage: Coverage,
+    pub(super) alpha_mask: AlphaMask,
     pub(super) level: Level,
 }
 
@@ -56,15 +56,15 @@ impl Bvh {
     /// The opacities of triangles that are cut out.
     #[doc(hidden)]
     #[inline]
-    pub fn with_coverage(self, coverage: &Coverage) -> Bvh {
-        Bvh { coverage: coverage.clone(), ..self }
+    pub fn with_alpha_mask(self, alpha_mask: &AlphaMask) -> Bvh {
+        Bvh { alpha_mask: alpha_mask.clone(), ..self }
     }
 
     /// These opacities.
     #[doc(hidden)]
     #[inline]
-    pub fn coverage(&self) -> &Coverage {
-        &self.coverage
+    pub fn alpha_mask(&self) -> &AlphaMask {
+        &self.alpha_mask
     }
 
     /// The nodes, root first.

@@ -198,7 +198,7 @@ DEVICE void walk_instances(const InstancedBvh &bvh, Vec3 origin, Vec3 direction,
                 floor = height;
             }
         }
-        if (triangles.bits != 0 && !ask(visitor, Part{bvh, bvh.coverage, instance}, triangles))
+        if (triangles.bits != 0 && !ask(visitor, Part{bvh, bvh.alpha_mask, instance}, triangles))
             return;
 
         // 5. No child left to enter: continue with the group most recently set aside, the next instance, or the scene.

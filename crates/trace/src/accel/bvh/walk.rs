@@ -75,7 +75,7 @@ pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut
     let mut stack = Stack::new(bvh.depth);
     for (hit, ray) in hits.iter_mut().zip(rays) {
         *hit = bvh.ray_clamp.ray(ray).map_or(Hit::MISS, |near| {
-            let mut closest = Closest::new(&near, &bvh.coverage);
+            let mut closest = Closest::new(&near, &bvh.alpha_mask);
             walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut closest);
             near.finish(closest.best)
         });
@@ -87,7 +87,7 @@ pub(super) fn all_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], take: &mut dyn
     let (mut stack, mut hits) = (Stack::new(bvh.depth), Vec::new());
     for (number, ray) in rays.iter().enumerate() {
         let Some(near) = bvh.ray_clamp.ray(ray) else { continue };
-        let mut all = All::new(&near, &bvh.coverage, &mut hits);
+        let mut all = All::new(&near, &bvh.alpha_mask, &mut hits);
         walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut all);
         all.finish(&near, |hits| take(number, hits));
     }
@@ -98,7 +98,7 @@ pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: 
     let mut stack = Stack::new(bvh.depth);
     for (occluded, segment) in occluded.iter_mut().zip(segments) {
         *occluded = bvh.ray_clamp.ray(segment).is_some_and(|near| {
-            let mut any = Any::new(&near, &bvh.coverage);
+            let mut any = Any::new(&near, &bvh.alpha_mask);
             walk(simd, bvh, 0, &Walked::new(near.origin, near.direction, 0.0), stack.entries(), &mut any);
             any.hit
         });

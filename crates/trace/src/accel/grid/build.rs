@@ -11,7 +11,7 @@ use super::options::{GridError, GridOptions, Levels};
 use super::overlap::triangle_meets_box;
 use crate::accel::deduplicate::deduplicate;
 use crate::accel::ray_clamp::RayClamp;
-use crate::accel::{Coverage, Triangle};
+use crate::accel::{AlphaMask, Triangle};
 
 /// Cells per triangle, if there is one level.
 const DENSITY: f64 = 8.0;
@@ -74,7 +74,7 @@ pub(super) fn build(triangles: &[Triangle], options: &GridOptions) -> Result<Gri
         geometry: geometry_hash(triangles),
         built_from: triangles.len() as u32,
         overruns: 0.into(),
-        coverage: Coverage::default(),
+        alpha_mask: AlphaMask::default(),
         lattice,
         margin,
         cells: cells.into(),

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 use super::lattice::Lattice;
 use crate::accel::ray_clamp::RayClamp;
-use crate::accel::{Coverage, Triangle};
+use crate::accel::{AlphaMask, Triangle};
 
 /// A regular grid of triangles.
 #[derive(Debug)]
@@ -21,7 +21,7 @@ pub struct Grid {
     /// The position of each in the list that the grid was built from.
     pub(super) sources: Arc<[u32]>,
     pub(super) ray_clamp: RayClamp,
-    pub(super) coverage: Coverage,
+    pub(super) alpha_mask: AlphaMask,
     /// Hash of the list that the grid was built from.
     pub(super) geometry: u64,
     /// Length of that list.
@@ -33,8 +33,8 @@ impl Grid {
     /// The opacities of triangles that are cut out.
     #[doc(hidden)]
     #[inline]
-    pub fn with_coverage(self, coverage: &Coverage) -> Grid {
-        Grid { coverage: coverage.clone(), ..self }
+    pub fn with_alpha_mask(self, alpha_mask: &AlphaMask) -> Grid {
+        Grid { alpha_mask: alpha_mask.clone(), ..self }
     }
 
     /// Cells on each axis of the outer grid.

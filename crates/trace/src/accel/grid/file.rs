@@ -31,7 +31,7 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 use super::build;
 use super::cells::Grid;
 use super::hash::geometry_hash;
-use crate::accel::{Coverage, Triangle};
+use crate::accel::{AlphaMask, Triangle};
 pub use fault::{GridFault, GridFileError, GridSaveError};
 
 const MAGIC: [u8; 8] = *b"LM GRID\0";
@@ -160,7 +160,7 @@ pub fn decode(header: &Header, bytes: &[u8], triangles: &[Triangle]) -> Result<G
         geometry,
         built_from: header.built_from,
         overruns: 0.into(),
-        coverage: Coverage::default(),
+        alpha_mask: AlphaMask::default(),
     })
 }
 

@@ -34,7 +34,7 @@ use fearless_simd::Level;
 
 use super::ray_clamp::overlap;
 use super::visit::{All, Any, Closest};
-use super::{Accelerator, AcceleratorKind, ChunkSink, Coverage, Hit, Ray, Region, ShortSegments, Triangle};
+use super::{Accelerator, AcceleratorKind, AlphaMask, ChunkSink, Hit, Ray, Region, ShortSegments, Triangle};
 use crate::simd::dispatch;
 pub use cells::Grid;
 pub use file::{GridFault, GridFileError, GridSaveError};
@@ -56,7 +56,7 @@ impl Accelerator for Grid {
     fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
         for (hit, ray) in hits.iter_mut().zip(rays) {
             *hit = self.ray_clamp.ray(ray).map_or(Hit::MISS, |near| {
-                let mut closest = Closest::new(&near, &self.coverage);
+                let mut closest = Closest::new(&near, &self.alpha_mask);
                 self.walk(near.origin, near.direction, &mut closest);
                 near.finish(closest.best)
             });
@@ -67,7 +67,7 @@ impl Accelerator for Grid {
         let mut hits = Vec::new();
         for (number, ray) in rays.iter().enumerate() {
             let Some(near) = self.ray_clamp.ray(ray) else { continue };
-            let mut all = All::new(&near, &self.coverage, &mut hits);
+            let mut all = All::new(&near, &self.alpha_mask, &mut hits);
             self.walk(near.origin, near.direction, &mut all);
             all.finish(&near, |hits| take(number, hits));
         }
@@ -76,7 +76,7 @@ impl Accelerator for Grid {
     fn occluded(&self, segments: &[Ray], occluded: &mut [bool]) {
         for (occluded, segment) in occluded.iter_mut().zip(segments) {
             *occluded = self.ray_clamp.ray(segment).is_some_and(|near| {
-                let mut any = Any::new(&near, &self.coverage);
+                let mut any = Any::new(&near, &self.alpha_mask);
                 self.walk(near.origin, near.direction, &mut any);
                 any.hit
             });
@@ -99,12 +99,12 @@ impl Accelerator for Grid {
         dispatch!(Level::new(), simd => search::search(simd, self, region, take));
     }
 
-    fn covered_by(&self, coverage: &Coverage) -> Box<dyn Accelerator> {
+    fn masked_by(&self, alpha_mask: &AlphaMask) -> Box<dyn Accelerator> {
         Box::new(Grid {
             cells: Arc::clone(&self.cells),
             triangles: Arc::clone(&self.triangles),
             sources: Arc::clone(&self.sources),
-            coverage: coverage.clone(),
+            alpha_mask: alpha_mask.clone(),
             overruns: 0.into(),
             ..*self
         })

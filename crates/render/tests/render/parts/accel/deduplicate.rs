@@ -10,7 +10,7 @@ fn triangle(size: f32, index: u32) -> Triangle {
 fn one_of_identical_triangles_is_held() {
     let triangles = [triangle(1.0, 4), triangle(2.0, 3), triangle(1.0, 2), triangle(0.0, 1), triangle(2.0, 5)];
     assert_eq!(deduplicate(&triangles), [1, 2]);
-    let mut cut = triangles.map(|triangle| triangle.cut_out(u32::from(triangle.index() != 3)));
+    let mut cut = triangles.map(|triangle| triangle.alpha_tested(u32::from(triangle.index() != 3)));
     assert_eq!(deduplicate(&cut), [0, 1, 2, 4], "what is cut out may differ");
     cut[0] = triangle(1.0, 4);
     assert_eq!(deduplicate(&cut), [0, 1, 2, 4]);

@@ -117,9 +117,9 @@ fn each_fault_has_its_name() {
 fn a_grid_of_opaque_triangles_is_not_one_of_triangles_that_are_cut_out() {
     let (_folder, path, _) = saved();
     let mut leaves = triangles();
-    leaves[7] = leaves[7].cut_out(1);
+    leaves[7] = leaves[7].alpha_tested(1);
     assert!(matches!(Grid::load(&path, &leaves).unwrap_err().fault, GridFault::OtherGeometry { .. }));
-    leaves[7] = leaves[7].cut_out(0);
+    leaves[7] = leaves[7].alpha_tested(0);
     assert!(Grid::load(&path, &leaves).is_ok());
 }
 

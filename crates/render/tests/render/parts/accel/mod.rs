@@ -1,5 +1,5 @@
+mod alpha_mask;
 mod bvh_build;
-mod coverage;
 mod deduplicate;
 mod grid_build;
 mod grid_distance;

@@ -65,7 +65,7 @@ fn hidden<S: Simd>(
         let corners = triangle.corners().map(|corner| splat(simd, corner));
         projected_lights.hide(
             simd,
-            (corners, Cuts::splat(bvh.coverage(), triangle.cut())),
+            (corners, Cuts::splat(bvh.alpha_mask(), triangle.cut())),
             (set, &offsets),
             0xff,
             &mut seen,

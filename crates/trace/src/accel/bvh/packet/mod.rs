@@ -71,9 +71,9 @@ pub(super) fn closest_hits<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut
             let packet = Packet::new(simd, &order, order.packet(start));
             start += packet.indices.len();
             let group = &packet.groups[0];
-            let mut closest = [ClosestPacket::new(simd, &bvh.coverage, group.shear, group.t_max); GROUPS];
+            let mut closest = [ClosestPacket::new(simd, &bvh.alpha_mask, group.shear, group.t_max); GROUPS];
             for (closest, group) in closest.iter_mut().zip(&packet.groups) {
-                *closest = ClosestPacket::new(simd, &bvh.coverage, group.shear, group.t_max);
+                *closest = ClosestPacket::new(simd, &bvh.alpha_mask, group.shear, group.t_max);
             }
             walk_packet(simd, bvh, &packet, &mut stacks, &mut closest);
             let mut found = [Hit::MISS; RAYS];
@@ -98,9 +98,9 @@ pub(super) fn occluded<S: Simd>(simd: S, bvh: &Bvh, segments: &[Ray], occluded: 
             let packet = Packet::new(simd, &order, order.packet(start));
             start += packet.indices.len();
             let group = &packet.groups[0];
-            let mut any = [AnyPacket::new(&bvh.coverage, group.shear, group.t_max); GROUPS];
+            let mut any = [AnyPacket::new(&bvh.alpha_mask, group.shear, group.t_max); GROUPS];
             for (any, group) in any.iter_mut().zip(&packet.groups) {
-                *any = AnyPacket::new(&bvh.coverage, group.shear, group.t_max);
+                *any = AnyPacket::new(&bvh.alpha_mask, group.shear, group.t_max);
             }
             walk_packet(simd, bvh, &packet, &mut stacks, &mut any);
             for lane in 0..packet.indices.len() {

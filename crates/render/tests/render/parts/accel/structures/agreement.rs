@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 use lightmesh_render::accel::{Accelerator, BruteForce, Bvh, Hit, Ray, ShortSegments, ShortTest, Triangle, Triangles};
-use lightmesh_render::internals::accel::{Beams, Coverage};
+use lightmesh_render::internals::accel::{AlphaMask, Beams};
 use lightmesh_scene::Bounds;
 use proptest::prelude::*;
 
 use super::rays::Targets;
-use super::scenes::{Scene, cut_out};
+use super::scenes::{Scene, alpha_tested};
 use super::{Random, grids, scenes, structures, structures_over};
 
 pub(super) fn closest(accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
@@ -42,12 +42,12 @@ pub(super) fn bits(hit: &Hit) -> [u32; 4] {
 
 /// Compares all structures over a scene on batches of rays that suit it. Returns the number of rays that hit.
 fn rays_agree(
-    (triangles, coverage): &(Vec<Triangle>, Coverage),
+    (triangles, alpha_mask): &(Vec<Triangle>, AlphaMask),
     mut batch: impl FnMut(&Targets) -> Vec<Ray>,
 ) -> Result<usize, TestCaseError> {
     let grids = grids(triangles);
     let rays = batch(&Targets { triangles, grids: &grids });
-    let oracle = BruteForce::new(triangles).with_coverage(coverage);
+    let oracle = BruteForce::new(triangles).with_alpha_mask(alpha_mask);
     let (hits, shadows) = (closest(&oracle, &rays), occluded(&oracle, &rays));
     for (ray, (hit, shadow)) in rays.iter().zip(hits.iter().zip(&shadows)) {
         prop_assert_eq!(hit.is_some(), *shadow, "closest and any hit, {:?}", ray);
@@ -63,7 +63,7 @@ fn rays_agree(
         let ordered = |pair: &[Hit]| pair[0].t <= pair[1].t && pair[0].triangle != pair[1].triangle;
         prop_assert!(hits.windows(2).all(ordered), "each once and in order: {:?}", hits);
     }
-    for (name, accelerator) in &structures_over(triangles, coverage) {
+    for (name, accelerator) in &structures_over(triangles, alpha_mask) {
         for (index, (hits, expected)) in all(&**accelerator, &rays).iter().zip(&behind).enumerate() {
             let bits = |hits: &[Hit]| hits.iter().map(bits).collect::<Vec<_>>();
             prop_assert_eq!(bits(hits), bits(expected), "{}, {:?}: all hits", name, rays[index]);
@@ -86,7 +86,7 @@ fn rays_agree(
 /// Rays of all kinds through a scene.
 fn single_rays_agree(scene: Scene, cut: bool, seed: u64) -> Result<(), TestCaseError> {
     let random = &mut Random(seed);
-    let held = cut_out(scene.triangles(random), cut, random);
+    let held = alpha_tested(scene.triangles(random), cut, random);
     let hits = rays_agree(&held, |targets| (0..400).map(|_| targets.ray(random)).collect())?;
     // A comparison of misses would prove little.
     prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
@@ -111,7 +111,7 @@ proptest! {
     #[test]
     fn coherent_rays_agree(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let held = cut_out(scene.triangles(random), cut, random);
+        let held = alpha_tested(scene.triangles(random), cut, random);
         // Bundles one after another in one batch: packets begin and end anywhere.
         let hits = rays_agree(&held, |targets| (0..40).flat_map(|_| targets.bundle(random)).collect())?;
         prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
@@ -120,10 +120,10 @@ proptest! {
     #[test]
     fn packets_agree_with_single_rays(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let (triangles, coverage) = cut_out(scene.triangles(random), cut, random);
+        let (triangles, alpha_mask) = alpha_tested(scene.triangles(random), cut, random);
         let grids = grids(&triangles);
         let targets = Targets { triangles: &triangles, grids: &grids };
-        let bvh = Bvh::new(&triangles).with_coverage(&coverage);
+        let bvh = Bvh::new(&triangles).with_alpha_mask(&alpha_mask);
         for _ in 0..20 {
             let rays = targets.bundle(random);
             let (hits, shadows) = (closest(&bvh, &rays), occluded(&bvh, &rays));
@@ -138,13 +138,13 @@ proptest! {
     #[test]
     fn beams_agree(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let (triangles, coverage) = cut_out(scene.triangles(random), cut, random);
+        let (triangles, alpha_mask) = alpha_tested(scene.triangles(random), cut, random);
         let grids = grids(&triangles);
         let targets = Targets { triangles: &triangles, grids: &grids };
-        let bvh = Bvh::new(&triangles).with_coverage(&coverage);
+        let bvh = Bvh::new(&triangles).with_alpha_mask(&alpha_mask);
         let usable = triangles.iter().filter(|triangle| triangle.is_usable());
         let (bounds, held) = (Bounds::around(usable.flat_map(Triangle::corners)), Triangles::from(triangles.clone()));
-        let mut beams = Beams::new(&bvh, &held, &coverage, &bounds);
+        let mut beams = Beams::new(&bvh, &held, &alpha_mask, &bounds);
         for _ in 0..20 {
             let unit = |ray: Ray| Ray { direction: ray.direction.try_normalize().unwrap_or(ray.direction), ..ray };
             let rays: Vec<Ray> = targets.bundle(random).into_iter().map(unit).collect();
@@ -166,9 +166,9 @@ proptest! {
     #[test]
     fn short_segments_agree(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let (triangles, coverage) = cut_out(scene.triangles(random), cut, random);
-        let all = structures_over(&triangles, &coverage);
-        let oracle = BruteForce::new(&triangles).with_coverage(&coverage);
+        let (triangles, alpha_mask) = alpha_tested(scene.triangles(random), cut, random);
+        let all = structures_over(&triangles, &alpha_mask);
+        let oracle = BruteForce::new(&triangles).with_alpha_mask(&alpha_mask);
         for _ in 0..20 {
             let usable: Vec<_> = triangles.iter().filter(|triangle| triangle.is_usable()).collect();
             let near = if usable.is_empty() { Vec3::ZERO } else { random.pick(&usable).corners()[0] };
@@ -178,7 +178,7 @@ proptest! {
             let directions: Vec<_> = directions.into_iter().filter(|direction| direction.dot(normal) > 0.0).collect();
             let test = ShortTest { origin, normal, edge_on: 1e-3 * length };
             // The plane form rounds relative to the triangles' size, here up to 1e3.
-            let segments = ShortSegments { test, directions: &directions, slack: 1e-2 * length, coverage: &coverage };
+            let segments = ShortSegments { test, directions: &directions, slack: 1e-2 * length, alpha_mask: &alpha_mask };
             let expected = blocked(&oracle, &segments);
             for (name, accelerator) in &all {
                 prop_assert_eq!(&blocked(&**accelerator, &segments), &expected, "{} from {:?}", name, origin);

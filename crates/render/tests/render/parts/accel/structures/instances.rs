@@ -4,13 +4,13 @@ use glam::{DMat4, DQuat, DVec3, EulerRot, Vec3};
 use lightmesh_render::accel::{
     Accelerator, BruteForce, Bvh, Region, ShortSegments, ShortTest, TangentPlanes, Triangle,
 };
-use lightmesh_render::internals::accel::Coverage;
+use lightmesh_render::internals::accel::AlphaMask;
 use lightmesh_scene::{FIRST_INSTANCED, Mesh};
 use proptest::prelude::*;
 
 use super::agreement::{bits, blocked, closest, occluded};
 use super::rays::Targets;
-use super::scenes::{Scene, cut_out};
+use super::scenes::{Scene, alpha_tested};
 use super::{Random, grids, scenes};
 
 /// Triangles as a mesh.
@@ -42,7 +42,7 @@ fn places(middle: DVec3, random: &mut Random) -> Vec<DMat4> {
 struct Shared {
     bvh: Bvh,
     copies: Vec<Triangle>,
-    coverage: Coverage,
+    alpha_mask: AlphaMask,
 }
 
 impl Shared {
@@ -54,10 +54,10 @@ impl Shared {
         let middle = corners.iter().map(|corner| corner.as_dvec3()).sum::<DVec3>() / corners.len().max(1) as f64;
         mesh.add_instances(&self::mesh(&shape), &places(middle, random), "shape").unwrap();
         let stored = (0..mesh.triangles.len()).map(|index| Triangle::new(mesh.corners(index), index as u32));
-        let (stored, coverage) = cut_out(stored.collect(), cut, random);
+        let (stored, alpha_mask) = alpha_tested(stored.collect(), cut, random);
         let own = &stored[..own.len()];
         let bvh = Bvh::with_instances(own, &stored, mesh.instances.list(), None);
-        let bvh = Bvh::with_instances(own, &stored, mesh.instances.list(), Some(&bvh)).with_coverage(&coverage);
+        let bvh = Bvh::with_instances(own, &stored, mesh.instances.list(), Some(&bvh)).with_alpha_mask(&alpha_mask);
         let flat = mesh.flattened().unwrap();
         let first = own.len();
         let copy = |index: usize| match index.checked_sub(first) {
@@ -65,10 +65,10 @@ impl Shared {
             Some(instanced) => {
                 let index_of_instance = FIRST_INSTANCED + instanced as u32;
                 let cut = stored[mesh.stored(index_of_instance)].cut();
-                Triangle::new(flat.corners(index), index_of_instance).cut_out(cut)
+                Triangle::new(flat.corners(index), index_of_instance).alpha_tested(cut)
             }
         };
-        Shared { bvh, copies: (0..flat.triangles.len()).map(copy).collect(), coverage }
+        Shared { bvh, copies: (0..flat.triangles.len()).map(copy).collect(), alpha_mask }
     }
 }
 
@@ -83,12 +83,12 @@ proptest! {
     #[test]
     fn rays_hit_places_like_copies(shape in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let Shared { bvh, copies, coverage } = Shared::new(shape, cut, random);
+        let Shared { bvh, copies, alpha_mask } = Shared::new(shape, cut, random);
         let grids = grids(&copies);
         let targets = Targets { triangles: &copies, grids: &grids };
         let mut rays: Vec<_> = (0..200).map(|_| targets.ray(random)).collect();
         rays.extend((0..20).flat_map(|_| targets.bundle(random)).collect::<Vec<_>>());
-        let oracle = BruteForce::new(&copies).with_coverage(&coverage);
+        let oracle = BruteForce::new(&copies).with_alpha_mask(&alpha_mask);
         let (hits, shadows) = (closest(&oracle, &rays), occluded(&oracle, &rays));
         for bvh in [bvh.clone().at_level(fearless_simd::Level::baseline()), bvh] {
             for (index, (hit, expected)) in closest(&bvh, &rays).iter().zip(&hits).enumerate() {
@@ -103,8 +103,8 @@ proptest! {
     #[test]
     fn short_segments_meet_places_like_copies(shape in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
-        let Shared { bvh, copies, coverage } = Shared::new(shape, cut, random);
-        let oracle = BruteForce::new(&copies).with_coverage(&coverage);
+        let Shared { bvh, copies, alpha_mask } = Shared::new(shape, cut, random);
+        let oracle = BruteForce::new(&copies).with_alpha_mask(&alpha_mask);
         for _ in 0..20 {
             let length = random.pick(&[0.05, 0.5, 2.0]);
             let origin = near(&copies, random) + random.signed() * length;
@@ -112,7 +112,7 @@ proptest! {
             let directions: Vec<_> = (0..40).map(|_| random.signed() * length).collect();
             let directions: Vec<_> = directions.into_iter().filter(|direction| direction.dot(normal) > 0.0).collect();
             let test = ShortTest { origin, normal, edge_on: 1e-3 * length };
-            let segments = ShortSegments { test, directions: &directions, slack: 1e-2 * length, coverage: &coverage };
+            let segments = ShortSegments { test, directions: &directions, slack: 1e-2 * length, alpha_mask: &alpha_mask };
             prop_assert_eq!(blocked(&bvh, &segments), blocked(&oracle, &segments), "from {:?}", origin);
         }
     }

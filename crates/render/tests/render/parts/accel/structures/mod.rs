@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lightmesh_render::accel::{Accelerator, Bvh, Grid, GridOptions, Levels, Triangle};
-use lightmesh_render::internals::accel::Coverage;
+use lightmesh_render::internals::accel::AlphaMask;
 
 mod agreement;
 mod closed;
@@ -59,15 +59,15 @@ type Named = (&'static str, Box<dyn Accelerator>);
 
 /// Every structure but the reference, in several shapes, with a name for messages.
 fn structures(triangles: &[Triangle]) -> Vec<Named> {
-    structures_over(triangles, &Coverage::default())
+    structures_over(triangles, &AlphaMask::default())
 }
 
 /// The same over triangles some of which are cut out.
-fn structures_over(triangles: &[Triangle], coverage: &Coverage) -> Vec<Named> {
-    let bvh = Bvh::new(triangles).with_coverage(coverage);
+fn structures_over(triangles: &[Triangle], alpha_mask: &AlphaMask) -> Vec<Named> {
+    let bvh = Bvh::new(triangles).with_alpha_mask(alpha_mask);
     let slow = bvh.clone().at_level(fearless_simd::Level::baseline());
     let mut all: Vec<Named> = vec![("bvh", Box::new(bvh)), ("bvh at the lowest SIMD level", Box::new(slow))];
-    let grids = grids(triangles).map(|grid| grid.with_coverage(coverage));
+    let grids = grids(triangles).map(|grid| grid.with_alpha_mask(alpha_mask));
     all.extend(grids.map(|grid| ("grid", Box::new(grid) as Box<dyn Accelerator>)));
     all
 }

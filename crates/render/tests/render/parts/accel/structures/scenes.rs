@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::Vec3;
 use lightmesh_memory::Budget;
 use lightmesh_render::accel::Triangle;
-use lightmesh_render::internals::accel::Coverage;
+use lightmesh_render::internals::accel::AlphaMask;
 use lightmesh_scene::{Geometry, Material, Mesh, Opacity, OpacityChannel, Texture, TextureUse, Wrap};
 
 use super::Random;
@@ -63,7 +63,7 @@ impl Scene {
 }
 
 /// Triangles of which, if `cut`, two of three are cut out by noise.
-pub(super) fn cut_out(triangles: Vec<Triangle>, cut: bool, random: &mut Random) -> (Vec<Triangle>, Coverage) {
+pub(super) fn alpha_tested(triangles: Vec<Triangle>, cut: bool, random: &mut Random) -> (Vec<Triangle>, AlphaMask) {
     let count = triangles.len() as u32;
     let texels = (0..64).map(|_| [0, 0, 0, random.below(256) as u8]).collect();
     let mesh = Mesh {
@@ -78,11 +78,11 @@ pub(super) fn cut_out(triangles: Vec<Triangle>, cut: bool, random: &mut Random) 
     let leaves = Material::default().with_opacity(Opacity::by(uses, OpacityChannel::Alpha).with_cutoff(0.4));
     let textures = vec![Texture { name: String::new(), size: [16, 4], texels }].into();
     let geometry = Geometry { mesh, materials: vec![Material::default(), leaves], textures, ..Geometry::default() };
-    let (coverage, numbers) = Coverage::of(&geometry, Budget::default()).unwrap();
+    let (alpha_mask, numbers) = AlphaMask::of(&geometry, Budget::default()).unwrap();
     assert_eq!(numbers.iter().any(|&number| number != 0), cut && count > 1);
     let number = |index: usize| numbers.get(index).copied().unwrap_or(0);
-    let triangles = triangles.iter().enumerate().map(|(index, triangle)| triangle.cut_out(number(index)));
-    (triangles.collect(), coverage)
+    let triangles = triangles.iter().enumerate().map(|(index, triangle)| triangle.alpha_tested(number(index)));
+    (triangles.collect(), alpha_mask)
 }
 
 pub(super) fn indexed(corners: &[[Vec3; 3]]) -> Vec<Triangle> {

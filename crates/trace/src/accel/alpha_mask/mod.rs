@@ -1,5 +1,5 @@
 //! Alpha: at which points a triangle that is cut out, such as a leaf or a fence, has a surface, and how opaque one is that lets light through.
-//! Twin of the decisions: `coverage.cuh`.
+//! Twin of the decisions: `alpha_mask.cuh`.
 //!
 //! ```text
 //! opacity at (u, v) = mask(A · uv) × opacity of the corners,      a surface where that is at least the cutoff
@@ -10,7 +10,7 @@
 //!
 //! A structure's triangle that is cut out holds the number of its entry here, others hold 0. So what is decided about a triangle costs
 //! nothing more until an opaque one would be hit. Tests that give no barycentric weights, those of short segments and of samples in rows, ask
-//! where the ray of the [watertight test](super::triangle::RayShear) meets the triangle: [`Coverage::stops`].
+//! where the ray of the [watertight test](super::triangle::RayShear) meets the triangle: [`AlphaMask::stops`].
 
 mod build;
 
@@ -30,7 +30,7 @@ pub use build::BYTES_TO_BUILD;
 
 /// The opacities of cut-out triangles; clones share them.
 #[derive(Clone, Debug, Default)]
-pub struct Coverage {
+pub struct AlphaMask {
     /// `None`: all triangles are opaque.
     table: Option<Arc<Table>>,
 }
@@ -63,7 +63,7 @@ pub struct Mask {
     pub blends: bool,
 }
 
-impl Coverage {
+impl AlphaMask {
     /// Everything that is cut out, if anything is.
     #[inline]
     pub fn table(&self) -> Option<&Table> {
@@ -71,7 +71,7 @@ impl Coverage {
     }
 
     /// The same where what is at least half opaque is a surface, and the rest is none. Both share all but the masks.
-    pub fn halved(&self) -> Coverage {
+    pub fn halved(&self) -> AlphaMask {
         let halve = |mask: &Mask| match mask.blends {
             true => Mask { limit: 0.5 * OPAQUE, blends: false, ..mask.clone() },
             false => mask.clone(),
@@ -81,7 +81,7 @@ impl Coverage {
             masks: table.masks.iter().map(halve).collect(),
             planes: table.planes.clone(),
         });
-        Coverage { table: table.map(Arc::new) }
+        AlphaMask { table: table.map(Arc::new) }
     }
 
     /// Adds all that decides where surfaces are to a hash.

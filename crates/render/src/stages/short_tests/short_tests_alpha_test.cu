@@ -1,3 +1,3 @@
 // The kernels of kernel.cu that test triangles, for scenes in which some are cut out, or that have instances.
-#define CUT_OUTS 1
-#include "stages/primary_rays/kernel.cu"
+#define ALPHA_TEST 1
+#include "stages/short_tests/kernel.cu"

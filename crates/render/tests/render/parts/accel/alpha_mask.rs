@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use lightmesh_memory::Budget;
 use lightmesh_render::accel::{Hit, Ray, Triangle};
-use lightmesh_render::internals::accel::{Coverage, between};
+use lightmesh_render::internals::accel::{AlphaMask, between};
 use lightmesh_scene::{Geometry, Material, Mesh, Opacity, OpacityChannel, Texture, TextureUse, Wrap};
 
 /// A triangle over half of the unit square, cut out by `alphas`, two by two texels, with `opacities` at its corners.
@@ -22,22 +22,22 @@ fn geometry(alphas: [u8; 4], opacities: &[f32], opacity: impl Fn(Opacity) -> Opa
     Geometry { mesh, materials: vec![material], textures: vec![texture].into(), ..Geometry::default() }
 }
 
-fn of(geometry: &Geometry) -> (Coverage, Vec<u32>) {
-    Coverage::of(geometry, Budget::default()).unwrap()
+fn of(geometry: &Geometry) -> (AlphaMask, Vec<u32>) {
+    AlphaMask::of(geometry, Budget::default()).unwrap()
 }
 
 /// Whether the whole geometry counts as opaque.
 fn is_opaque(geometry: &Geometry) -> bool {
-    let (coverage, numbers) = of(geometry);
-    assert_eq!(coverage.table().is_none(), numbers.is_empty());
+    let (alpha_mask, numbers) = of(geometry);
+    assert_eq!(alpha_mask.table().is_none(), numbers.is_empty());
     numbers.is_empty()
 }
 
 #[test]
 fn a_check_of_alpha_is_cut_out_along_its_edges() {
-    let (coverage, numbers) = of(&geometry([255, 0, 0, 255], &[], |it| it));
+    let (alpha_mask, numbers) = of(&geometry([255, 0, 0, 255], &[], |it| it));
     assert_eq!(numbers, [1]);
-    let covers = |u, v| coverage.covers(1, u, v);
+    let covers = |u, v| alpha_mask.covers(1, u, v);
     for (u, v) in [(0.1, 0.1), (0.49, 0.49), (0.49, 0.0), (0.0, 0.49)] {
         assert!(covers(u, v), "{u} {v}");
     }
@@ -51,12 +51,12 @@ fn a_check_of_alpha_is_cut_out_along_its_edges() {
 #[test]
 fn rays_and_segments_meet_what_is_left() {
     let geometry = geometry([255, 0, 0, 255], &[], |it| it);
-    let (coverage, numbers) = of(&geometry);
-    let triangle = Triangle::new(geometry.mesh.corners(0), 0).cut_out(numbers[0]);
+    let (alpha_mask, numbers) = of(&geometry);
+    let triangle = Triangle::new(geometry.mesh.corners(0), 0).alpha_tested(numbers[0]);
     for (x, y, there) in [(0.2, 0.2, true), (0.7, 0.2, false), (0.2, 0.7, false), (0.7, 0.7, false)] {
         let (origin, direction) = (Vec3::new(x, y, 1.0), Vec3::NEG_Z);
-        assert_eq!(coverage.stops(&triangle, origin, direction), there, "{x} {y}");
-        let all = lightmesh_render::accel::BruteForce::new(&[triangle]).with_coverage(&coverage);
+        assert_eq!(alpha_mask.stops(&triangle, origin, direction), there, "{x} {y}");
+        let all = lightmesh_render::accel::BruteForce::new(&[triangle]).with_alpha_mask(&alpha_mask);
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
         let mut hits = [Hit::MISS];
         lightmesh_render::accel::Accelerator::closest_hits(&all, &[ray], &mut hits);
@@ -85,8 +85,8 @@ fn a_cut_out_without_an_image_goes_by_its_corners() {
         opacity
     };
     let mut geometry = geometry([0; 4], &[1.0, 0.0, 0.0], without_image);
-    let (coverage, _) = of(&geometry);
-    assert!(coverage.covers(1, 0.25, 0.25) && coverage.covers(1, 0.5, 0.0) && !coverage.covers(1, 0.3, 0.3));
+    let (alpha_mask, _) = of(&geometry);
+    assert!(alpha_mask.covers(1, 0.25, 0.25) && alpha_mask.covers(1, 0.5, 0.0) && !alpha_mask.covers(1, 0.3, 0.3));
     // An image that is not there hides nothing, and shows nothing.
     geometry.mesh.opacities.clear();
     geometry.materials[0].opacity = Some(Opacity::by(TextureUse::new(7), OpacityChannel::Alpha));
@@ -117,7 +117,7 @@ fn interpolation_falls_nowhere_below_the_least_texel() {
 fn opacities_that_do_not_fit_are_refused() {
     let mut geometry = geometry([0; 4], &[], |it| it);
     geometry.textures[0] = Texture { name: "vast".into(), size: [1024; 2], texels: vec![[0; 4]; 1 << 20] };
-    let (index, short) = Coverage::of(&geometry, Budget::new(Some(1))).unwrap_err();
+    let (index, short) = AlphaMask::of(&geometry, Budget::new(Some(1))).unwrap_err();
     assert_eq!((index, short.needed), (0, 1 << 20));
     assert!(of(&geometry).0.memory() > 1 << 20);
 }

@@ -12,19 +12,19 @@ use lightmesh_layout::geometry::CutTriangle;
 use lightmesh_memory::{Budget, OverBudget};
 use lightmesh_scene::{Geometry, Opacity, OpacityChannel, OpacityMode, Texture, TextureUse, Wrap};
 
-use super::{Coverage, Mask, Table};
+use super::{AlphaMask, Mask, Table};
 use crate::textures::usable;
 
 /// Bytes that a triangle takes if any is cut out: its entry and its number.
 pub const BYTES_TO_BUILD: u64 = (size_of::<CutTriangle>() + size_of::<u32>()) as u64;
 
-impl Coverage {
+impl AlphaMask {
     /// The opacities of a geometry, whose indices must be in range, and the number of each triangle: 0 for those that are opaque
     /// everywhere; no numbers at all if all are.
     ///
     /// # Errors
     /// The number of the texture whose opacities do not fit into the budget.
-    pub fn of(geometry: &Geometry, budget: Budget) -> Result<(Coverage, Vec<u32>), (usize, OverBudget)> {
+    pub fn of(geometry: &Geometry, budget: Budget) -> Result<(AlphaMask, Vec<u32>), (usize, OverBudget)> {
         let mut masks = Masks { geometry, budget, known: HashMap::new(), least: Vec::new(), table: Table::default() };
         let mut of_materials = Vec::new();
         for material in &geometry.materials {
@@ -35,7 +35,7 @@ impl Coverage {
         }
         let Masks { least, mut table, .. } = masks;
         if of_materials.iter().all(Option::is_none) {
-            return Ok((Coverage::default(), Vec::new()));
+            return Ok((AlphaMask::default(), Vec::new()));
         }
         let mesh = &geometry.mesh;
         let masked = mesh.materials.iter().filter(|material| of_materials[**material as usize].is_some());
@@ -56,10 +56,10 @@ impl Coverage {
         };
         let numbers: Vec<u32> = mesh.triangles.iter().zip(&mesh.materials).map(number).collect();
         if triangles.is_empty() {
-            return Ok((Coverage::default(), Vec::new()));
+            return Ok((AlphaMask::default(), Vec::new()));
         }
         table.triangles = triangles.into();
-        Ok((Coverage { table: Some(Arc::new(table)) }, numbers))
+        Ok((AlphaMask { table: Some(Arc::new(table)) }, numbers))
     }
 }
 

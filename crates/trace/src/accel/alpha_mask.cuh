@@ -1,7 +1,7 @@
-// Where surfaces are that are cut out, and how opaque are those that light goes through: twin of coverage/mod.rs, bit by bit.
+// Where surfaces are that are cut out, and how opaque are those that light goes through: twin of alpha_mask/mod.rs, bit by bit.
 //
 // Most scenes are opaque, and what cut-outs need takes registers from loops over triangles even where it is never used. Where that costs time, the
-// kernels that test triangles are in two modules, without and with CUT_OUTS: `<module>_cut_out.cu` includes `kernel.cu`. See gpu/per_structure.rs.
+// kernels that test triangles are in two modules, without and with ALPHA_TEST: `<module>_alpha_test.cu` includes `kernel.cu`. See gpu/per_structure.rs.
 #pragma once
 
 #include "accel/instanced.cuh"
@@ -40,48 +40,48 @@ DEVICE float opacity_of(const CutTriangle &own, const Mask &mask, float u, float
 }
 
 // Whether the cut-out triangle number `cut` has a surface there.
-DEVICE bool covers(const Coverage &coverage, unsigned cut, float u, float v) {
-    const CutTriangle &own = coverage.triangles[cut - 1];
-    const Mask &mask = coverage.masks[own.mask];
+DEVICE bool covers(const AlphaMask &alpha_mask, unsigned cut, float u, float v) {
+    const CutTriangle &own = alpha_mask.triangles[cut - 1];
+    const Mask &mask = alpha_mask.masks[own.mask];
     // NaN is nothing.
     return opacity_of(own, mask, u, v) >= mask.limit;
 }
 
 // How opaque a triangle is where it is hit, from 0 to 1.
-DEVICE float opacity_at(const Coverage &coverage, const Triangle *triangle, float u, float v) {
-    const unsigned cut = coverage.triangles != nullptr ? triangle_cut(triangle) : 0;
+DEVICE float opacity_at(const AlphaMask &alpha_mask, const Triangle *triangle, float u, float v) {
+    const unsigned cut = alpha_mask.triangles != nullptr ? triangle_cut(triangle) : 0;
     if (cut == 0)
         return 1.0f;
-    const CutTriangle &own = coverage.triangles[cut - 1];
-    const Mask &mask = coverage.masks[own.mask];
+    const CutTriangle &own = alpha_mask.triangles[cut - 1];
+    const Mask &mask = alpha_mask.masks[own.mask];
     return mask.blends ? fminf(opacity_of(own, mask, u, v) / OPAQUE, 1.0f) : 1.0f;
 }
 
 // The same for a hit, by its scaled weights.
-COLD bool covers_hit(Coverage coverage, unsigned cut, Weights weights) {
-    return covers(coverage, cut, (float)(weights.v / weights.det), (float)(weights.w / weights.det));
+COLD bool covers_hit(AlphaMask alpha_mask, unsigned cut, Weights weights) {
+    return covers(alpha_mask, cut, (float)(weights.v / weights.det), (float)(weights.w / weights.det));
 }
 
 // Where the triangles of a structure are cut out; null if all of them are opaque.
 template <class Structure>
-DEVICE const Coverage *coverage_of(const Structure &structure) {
-    return CUT_OUTS && structure.coverage.triangles != nullptr ? &structure.coverage : nullptr;
+DEVICE const AlphaMask *alpha_mask_of(const Structure &structure) {
+    return ALPHA_TEST && structure.alpha_mask.triangles != nullptr ? &structure.alpha_mask : nullptr;
 }
 
 // The host takes a BVH in place of a grid where anything is cut out.
-DEVICE const Coverage *coverage_of(const Grid &) { return nullptr; }
+DEVICE const AlphaMask *alpha_mask_of(const Grid &) { return nullptr; }
 
 // Whether there is a surface where a triangle is hit.
 template <class Handle>
-DEVICE bool has_surface(const Coverage *coverage, const Handle &triangle, const Weights &weights) {
-    if (coverage == nullptr)
+DEVICE bool has_surface(const AlphaMask *alpha_mask, const Handle &triangle, const Weights &weights) {
+    if (alpha_mask == nullptr)
         return true;
     const unsigned cut = triangle_cut(triangle);
-    return cut == 0 || covers_hit(*coverage, cut, weights);
+    return cut == 0 || covers_hit(*alpha_mask, cut, weights);
 }
 
 // Whether there is a surface where the segment from `origin` along `direction` meets the plane of the cut-out triangle number `cut`.
-COLD bool stops_cut(Coverage coverage, unsigned cut, Corners corners, Vec3 origin, Vec3 direction) {
+COLD bool stops_cut(AlphaMask alpha_mask, unsigned cut, Corners corners, Vec3 origin, Vec3 direction) {
     const float4 a = {corners.a.x, corners.a.y, corners.a.z, 0.0f}, b = {corners.b.x, corners.b.y, corners.b.z, 0.0f},
                  c = {corners.c.x, corners.c.y, corners.c.z, 0.0f};
     const RayShear ray = ray_shear(origin, direction);
@@ -91,14 +91,14 @@ COLD bool stops_cut(Coverage coverage, unsigned cut, Corners corners, Vec3 origi
                      : ray.axis & 2 ? may_meet_corners<2>(ray, a, b, c, sheared)
                                     : may_meet_corners<0>(ray, a, b, c, sheared);
     return may && weigh(sheared, weights) &&
-           covers(coverage, cut, (float)(weights.v / weights.det), (float)(weights.w / weights.det));
+           covers(alpha_mask, cut, (float)(weights.v / weights.det), (float)(weights.w / weights.det));
 }
 
 // The same for any triangle.
 template <class Handle>
-DEVICE bool stops(const Coverage *coverage, const Handle &triangle, const Corners &corners, Vec3 origin, Vec3 direction) {
-    if (coverage == nullptr)
+DEVICE bool stops(const AlphaMask *alpha_mask, const Handle &triangle, const Corners &corners, Vec3 origin, Vec3 direction) {
+    if (alpha_mask == nullptr)
         return true;
     const unsigned cut = triangle_cut(triangle);
-    return cut == 0 || stops_cut(*coverage, cut, corners, origin, direction);
+    return cut == 0 || stops_cut(*alpha_mask, cut, corners, origin, direction);
 }
