@@ -367,7 +367,7 @@ fn a_cache_grows_and_forgets_nothing() {
     assert_eq!((again.0, again.1, again.2), (0, large.1, large.2));
 }
 
-/// Of the first image, most kernels have one launch; of the second, as many as there are blocks or items.
+/// Of the first image, most kernels have one launch; of the second, as many as there are blocks or bundles.
 #[test]
 #[cfg_attr(no_cxx, ignore = "no C++ compiler worked; install one, or set CXX")]
 fn short_launches_make_the_same_picture() {

@@ -19,7 +19,7 @@ macro_rules! constants {
 constants! {
     // Launches.
 
-    /// Threads of a warp, and the maximum number of surface points of an item.
+    /// Threads of a warp, and the maximum number of surface points of a bundle.
     WARP: u32 = 32;
     /// Edge of the square of pixels that a block processes, one per thread.
     BLOCK_SIDE: u32 = 16;
@@ -406,7 +406,7 @@ constants! {
     STACK_OF_INSTANCES: u32 = 128;
     /// Number of instances that a node's leaves hold at most.
     MAX_HELD: u32 = 24;
-    /// Maximum number of boxes from which the searches of a tile's items start.
+    /// Maximum number of boxes from which the searches of a tile's bundles start.
     MAX_SEARCH_ROOTS: u32 = 48;
     /// Marks a box that is a leaf.
     LEAF_START: u32 = 1 << 31;
@@ -432,8 +432,8 @@ constants! {
 
     // Interpolation.
 
-    /// Warps of a block that marks light points or interpolates, an item each.
-    ITEM_WARPS: u32 = 4;
+    /// Warps of a block that marks light points or interpolates, a bundle each.
+    BUNDLE_WARPS: u32 = 4;
     /// Maximum number of lights without an area that are interpolated at once.
     MAX_LIGHTS: u32 = 3;
 

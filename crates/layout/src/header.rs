@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn constants_come_with_what_they_mean() {
         assert!(header().contains(
-            "// Threads of a warp, and the maximum number of surface points of an item.\n#define WARP 32u\n"
+            "// Threads of a warp, and the maximum number of surface points of a bundle.\n#define WARP 32u\n"
         ));
         let mut text = String::new();
         print_record(&mut text, &Outline::of::<Hit>());

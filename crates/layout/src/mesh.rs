@@ -53,7 +53,7 @@ records! {
     }
 
     /// Up to 32 surface points of one cell: the work of one warp.
-    Item {
+    Bundle {
         /// Key of the cell.
         cell: u64,
         /// The index of its first surface point in the list of members.

@@ -2,7 +2,7 @@
 
 use crate::constants::FIRST_TARGETS;
 use crate::geometry::{Cone, Hit, ListedRay, Rays, Tally, Triangles, Vec3};
-use crate::mesh::{BrickTable, Item, KeptBy, LightMesh, UsedPoints, VisibilityOfLight};
+use crate::mesh::{BrickTable, Bundle, KeptBy, LightMesh, UsedPoints, VisibilityOfLight};
 use crate::record::records;
 use crate::scene::{SampleRows, Sampling, Scene};
 use crate::{In, Out};
@@ -16,8 +16,8 @@ records! {
         high: Vec3,
     }
 
-    /// `group_items` and `gather_items`: one block per tile of 1024 rays.
-    GroupItems {
+    /// `group_bundles` and `gather_bundles`: one block per tile of 1024 rays.
+    GroupBundles {
         /// The scene.
         scene: Scene,
         /// Rays.
@@ -26,12 +26,12 @@ records! {
         hits: In<Hit>,
         /// Surface points by tile, then cell: ray numbers, 1024 entries per tile.
         members: Out<u32>,
-        /// The end of each item among the members of its tile, 1024 entries per tile.
+        /// The end of each bundle among the members of its tile, 1024 entries per tile.
         ends: Out<u16>,
-        /// Number of items of each tile; after the scan, of all tiles before it.
+        /// Number of bundles of each tile; after the scan, of all tiles before it.
         counts: Out<u32>,
-        /// All items, one tile after another: slot of the first member · 64 + their number.
-        items: Out<u64>,
+        /// All bundles, one tile after another: slot of the first member · 64 + their number.
+        bundles: Out<u64>,
         /// The boxes around the surface points of each tile.
         tiles: Out<TileBox>,
         /// The first block of this launch among all blocks.
@@ -52,7 +52,7 @@ records! {
         lit: f32,
     }
 
-    /// `area_shadows`: one warp per 32 rays; `find_starts`: one warp per tile and light; `occluder_lists`: one warp per item; `sample_rays`:
+    /// `area_shadows`: one warp per 32 rays; `find_starts`: one warp per tile and light; `occluder_lists`: one warp per bundle; `sample_rays`:
     /// one thread per ray.
     Shadows {
         /// The scene.
@@ -63,14 +63,14 @@ records! {
         hits: In<Hit>,
         /// Ray numbers by slot.
         members: In<u32>,
-        /// Slot of the first member · 64 + their number, by item.
-        items: In<u64>,
+        /// Slot of the first member · 64 + their number, by bundle.
+        bundles: In<u64>,
         /// The boxes around the surface points of each tile.
         tiles: In<TileBox>,
         /// By tile, then light of the group, MAX_SEARCH_ROOTS + 1 words each: the number of boxes from which searches start, then these; see
         /// `accel/search.cuh`.
         starts: Out<u32>,
-        /// Number of items of this launch that are taken.
+        /// Number of bundles of this launch that are taken.
         taken: Out<u32>,
         /// Share of each light by light, then ray; the number of samples seen until the last set.
         share: Out<f32>,
@@ -80,9 +80,9 @@ records! {
         sampling: Sampling,
         /// Counts samples.
         tally: Tally,
-        /// The first warp, item or block of this launch.
+        /// The first warp, bundle or block of this launch.
         first: u64,
-        /// Number of warps, items or blocks in this launch.
+        /// Number of warps, bundles or blocks in this launch.
         count: u64,
         /// The samples of discs and rectangles that are tested now; no rows if there are none left.
         sets: [SampleRows; 2],
@@ -372,7 +372,7 @@ records! {
         spacing: [f32; 2],
     }
 
-    /// `group_points` and `gather_items`: one block per tile of 1024 rays.
+    /// `group_points` and `gather_bundles`: one block per tile of 1024 rays.
     GroupCells {
         /// The scene.
         scene: Scene,
@@ -384,17 +384,17 @@ records! {
         mesh: LightMesh,
         /// Surface points by tile, then cell: ray numbers, 1024 entries per tile.
         members: Out<u32>,
-        /// Items by tile, 1024 entries per tile.
-        tile_items: Out<Item>,
-        /// Number of items of each tile; after the scan, of all tiles before it.
+        /// Bundles by tile, 1024 entries per tile.
+        tile_bundles: Out<Bundle>,
+        /// Number of bundles of each tile; after the scan, of all tiles before it.
         counts: Out<u32>,
-        /// All items, one tile after another.
-        items: Out<Item>,
+        /// All bundles, one tile after another.
+        bundles: Out<Bundle>,
         /// The first block of this launch among all blocks.
         first_block: u64,
     }
 
-    /// `short_tests`: one warp per item.
+    /// `short_tests`: one warp per bundle.
     ShortTests {
         /// The scene.
         scene: Scene,
@@ -407,32 +407,32 @@ records! {
         /// Ray numbers by slot.
         members: In<u32>,
         /// Up to 32 surface points of a cell each.
-        items: In<Item>,
-        /// Masks: 32 · words words per item; bit l of word k says whether the item's l-th surface point sees light point k.
+        bundles: In<Bundle>,
+        /// Masks: 32 · words words per bundle; bit l of word k says whether the bundle's l-th surface point sees light point k.
         masks: Out<u32>,
         /// Counters.
         tally: Tally,
-        /// The first item of this launch.
-        first_item: u64,
-        /// Number of items in this launch.
-        item_count: u64,
+        /// The first bundle of this launch.
+        first_bundle: u64,
+        /// Number of bundles in this launch.
+        bundle_count: u64,
     }
 
-    /// `mark_items`: one warp per item; `insert_bricks` and `mark_points`: one thread per brick of an item's window; `count_points` and
+    /// `mark_bundles`: one warp per bundle; `insert_bricks` and `mark_points`: one thread per brick of a bundle's window; `count_points` and
     /// `list_points`: one thread per slot.
     LightPoints {
         /// The light mesh.
         mesh: LightMesh,
-        /// Items.
-        items: In<Item>,
+        /// Bundles.
+        bundles: In<Bundle>,
         /// Their masks.
         masks: In<u32>,
-        /// The used points of each brick of the window around each item's cell.
+        /// The used points of each brick of the window around each bundle's cell.
         marks: Out<u64>,
-        /// The first item of this launch.
-        first_item: u64,
-        /// Number of items in this launch.
-        item_count: u64,
+        /// The first bundle of this launch.
+        first_bundle: u64,
+        /// Number of bundles in this launch.
+        bundle_count: u64,
         /// The bricks that contain used points.
         table: BrickTable,
         /// Used points of each slot.
@@ -443,7 +443,7 @@ records! {
         points: Out<u64>,
         /// Number of bricks in the table.
         bricks: Out<u32>,
-        /// The slot of each brick of each item's window that has used points.
+        /// The slot of each brick of each bundle's window that has used points.
         slots: Out<u32>,
     }
 
@@ -504,7 +504,7 @@ records! {
         spare: u32,
     }
 
-    /// `interpolate`: one warp per item; `fallback`: one thread per ray.
+    /// `interpolate`: one warp per bundle; `fallback`: one thread per ray.
     Interpolate {
         /// The scene.
         scene: Scene,
@@ -516,13 +516,13 @@ records! {
         mesh: LightMesh,
         /// Ray numbers by slot.
         members: In<u32>,
-        /// Items.
-        items: In<Item>,
+        /// Bundles.
+        bundles: In<Bundle>,
         /// Their masks.
         masks: In<u32>,
         /// The used light points.
         points: UsedPoints,
-        /// The slot of each brick of the window around each item's cell that has used points.
+        /// The slot of each brick of the window around each bundle's cell that has used points.
         slots: In<u32>,
         /// The visibility at these points, by light.
         lit: In<VisibilityOfLight>,
@@ -538,9 +538,9 @@ records! {
         sampling: Sampling,
         /// Counters.
         tally: Tally,
-        /// The first item, or block of rays that fall back, of this launch.
+        /// The first bundle, or block of rays that fall back, of this launch.
         first: u64,
-        /// Number of items in this launch.
+        /// Number of bundles in this launch.
         count: u64,
     }
 

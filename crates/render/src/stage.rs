@@ -71,7 +71,7 @@ stages! {
     /// Surface points by cell of the light mesh.
     Cells = cells,
     /// Surface points in small groups.
-    Items = items,
+    Bundles = items,
     /// Which light points each surface point sees.
     ShortTests = short_tests,
     /// Collecting each used light point once.

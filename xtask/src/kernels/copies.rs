@@ -34,7 +34,7 @@ const ALLOWED: [(&str, &str); 35] = [
     ("0xffff0000u", "lanes are exchanged between halves of a warp"),
     ("0xffff", "two 16-bit numbers in a word; Rust casts"),
     ("NO_POINT", "sorts threads without a surface point last"),
-    ("FLAT", "an item without curved surfaces skips what the host does for each point"),
+    ("FLAT", "a bundle without curved surfaces skips what the host does for each point"),
     ("NO_CANDIDATE", "an empty place of a list that lanes share"),
     ("NO_TARGET", "ends a list in shared memory"),
     ("0x80000000u", "more bricks than fit into any table: it is full"),

@@ -180,13 +180,13 @@ impl<'a, R: Target> Twins<'a, R> {
         let (host, device) = (self.on_host(&context), self.on_device(&context));
         let target = ShadowTarget::Area(context.sampling);
         let expected = Cpu.area_shadows(&host, &target).unwrap();
-        let lists = Cpu.occluder_lists(&host, &Cpu.items(&host).unwrap(), &target).unwrap();
+        let lists = Cpu.occluder_lists(&host, &Cpu.bundles(&host).unwrap(), &target).unwrap();
         let same = (expected.share.iter().zip(&lists.share)).all(|(a, b)| a.to_bits() == b.to_bits());
         assert!(same, "{} samples: lists on the CPU", self.samples);
         let found = self.cuda.area_shadows(&device, &target).unwrap();
         self.same_shares("samples in rows", &expected, &found.read().unwrap(), 0.0, 0);
-        let items = self.cuda.items(&device).unwrap();
-        let found = self.cuda.occluder_lists(&device, &items, &target).unwrap();
+        let bundles = self.cuda.bundles(&device).unwrap();
+        let found = self.cuda.occluder_lists(&device, &bundles, &target).unwrap();
         self.same_shares("occluder lists", &expected, &found.read().unwrap(), 0.0, 0);
     }
 

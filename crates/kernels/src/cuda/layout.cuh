@@ -3,7 +3,7 @@
 // What host and device share: constants and records.
 #pragma once
 
-// Threads of a warp, and the maximum number of surface points of an item.
+// Threads of a warp, and the maximum number of surface points of a bundle.
 #define WARP 32u
 // Edge of the square of pixels that a block processes, one per thread.
 #define BLOCK_SIDE 16u
@@ -363,7 +363,7 @@
 #define STACK_OF_INSTANCES 128u
 // Number of instances that a node's leaves hold at most.
 #define MAX_HELD 24u
-// Maximum number of boxes from which the searches of a tile's items start.
+// Maximum number of boxes from which the searches of a tile's bundles start.
 #define MAX_SEARCH_ROOTS 48u
 // Marks a box that is a leaf.
 #define LEAF_START 0x80000000u
@@ -383,8 +383,8 @@
 #define LISTED_TARGETS 64u
 // Words of such a pair.
 #define TARGET_WORDS 4u
-// Warps of a block that marks light points or interpolates, an item each.
-#define ITEM_WARPS 4u
+// Warps of a block that marks light points or interpolates, a bundle each.
+#define BUNDLE_WARPS 4u
 // Maximum number of lights without an area that are interpolated at once.
 #define MAX_LIGHTS 3u
 // Surface cells are offset from round coordinates, on which floors and walls tend to lie, by this fraction of their size, along x.
@@ -1230,15 +1230,15 @@ static_assert(PLACE_OF(TemplateRow, x) == 4, "place of TemplateRow::x");
 static_assert(PLACE_OF(TemplateRow, y) == 8, "place of TemplateRow::y");
 static_assert(PLACE_OF(TemplateRow, z) == 12, "place of TemplateRow::z");
 
-struct alignas(8) Item {
+struct alignas(8) Bundle {
     unsigned long long cell;
     unsigned first;
     unsigned count;
 };
-static_assert(sizeof(Item) == 16, "size of Item");
-static_assert(PLACE_OF(Item, cell) == 0, "place of Item::cell");
-static_assert(PLACE_OF(Item, first) == 8, "place of Item::first");
-static_assert(PLACE_OF(Item, count) == 12, "place of Item::count");
+static_assert(sizeof(Bundle) == 16, "size of Bundle");
+static_assert(PLACE_OF(Bundle, cell) == 0, "place of Bundle::cell");
+static_assert(PLACE_OF(Bundle, first) == 8, "place of Bundle::first");
+static_assert(PLACE_OF(Bundle, count) == 12, "place of Bundle::count");
 
 struct alignas(8) BrickTable {
     unsigned long long *keys;
@@ -1696,29 +1696,29 @@ static_assert(sizeof(TileBox) == 24, "size of TileBox");
 static_assert(PLACE_OF(TileBox, low) == 0, "place of TileBox::low");
 static_assert(PLACE_OF(TileBox, high) == 12, "place of TileBox::high");
 
-struct alignas(8) GroupItems {
+struct alignas(8) GroupBundles {
     Scene scene;
     Rays rays;
     const Hit *hits;
     unsigned *members;
     unsigned short *ends;
     unsigned *counts;
-    unsigned long long *items;
+    unsigned long long *bundles;
     TileBox *tiles;
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupItems) == 864, "size of GroupItems");
-static_assert(PLACE_OF(GroupItems, scene) == 0, "place of GroupItems::scene");
-static_assert(PLACE_OF(GroupItems, rays) == 680, "place of GroupItems::rays");
-static_assert(PLACE_OF(GroupItems, hits) == 800, "place of GroupItems::hits");
-static_assert(PLACE_OF(GroupItems, members) == 808, "place of GroupItems::members");
-static_assert(PLACE_OF(GroupItems, ends) == 816, "place of GroupItems::ends");
-static_assert(PLACE_OF(GroupItems, counts) == 824, "place of GroupItems::counts");
-static_assert(PLACE_OF(GroupItems, items) == 832, "place of GroupItems::items");
-static_assert(PLACE_OF(GroupItems, tiles) == 840, "place of GroupItems::tiles");
-static_assert(PLACE_OF(GroupItems, first_block) == 848, "place of GroupItems::first_block");
-static_assert(PLACE_OF(GroupItems, spacing) == 856, "place of GroupItems::spacing");
+static_assert(sizeof(GroupBundles) == 864, "size of GroupBundles");
+static_assert(PLACE_OF(GroupBundles, scene) == 0, "place of GroupBundles::scene");
+static_assert(PLACE_OF(GroupBundles, rays) == 680, "place of GroupBundles::rays");
+static_assert(PLACE_OF(GroupBundles, hits) == 800, "place of GroupBundles::hits");
+static_assert(PLACE_OF(GroupBundles, members) == 808, "place of GroupBundles::members");
+static_assert(PLACE_OF(GroupBundles, ends) == 816, "place of GroupBundles::ends");
+static_assert(PLACE_OF(GroupBundles, counts) == 824, "place of GroupBundles::counts");
+static_assert(PLACE_OF(GroupBundles, bundles) == 832, "place of GroupBundles::bundles");
+static_assert(PLACE_OF(GroupBundles, tiles) == 840, "place of GroupBundles::tiles");
+static_assert(PLACE_OF(GroupBundles, first_block) == 848, "place of GroupBundles::first_block");
+static_assert(PLACE_OF(GroupBundles, spacing) == 856, "place of GroupBundles::spacing");
 
 struct alignas(4) Weighed {
     unsigned above;
@@ -1737,7 +1737,7 @@ struct alignas(8) Shadows {
     Rays rays;
     const Hit *hits;
     const unsigned *members;
-    const unsigned long long *items;
+    const unsigned long long *bundles;
     const TileBox *tiles;
     unsigned *starts;
     unsigned *taken;
@@ -1758,7 +1758,7 @@ static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
 static_assert(PLACE_OF(Shadows, rays) == 680, "place of Shadows::rays");
 static_assert(PLACE_OF(Shadows, hits) == 800, "place of Shadows::hits");
 static_assert(PLACE_OF(Shadows, members) == 808, "place of Shadows::members");
-static_assert(PLACE_OF(Shadows, items) == 816, "place of Shadows::items");
+static_assert(PLACE_OF(Shadows, bundles) == 816, "place of Shadows::bundles");
 static_assert(PLACE_OF(Shadows, tiles) == 824, "place of Shadows::tiles");
 static_assert(PLACE_OF(Shadows, starts) == 832, "place of Shadows::starts");
 static_assert(PLACE_OF(Shadows, taken) == 840, "place of Shadows::taken");
@@ -2054,9 +2054,9 @@ struct alignas(8) GroupCells {
     const Hit *hits;
     LightMesh mesh;
     unsigned *members;
-    Item *tile_items;
+    Bundle *tile_bundles;
     unsigned *counts;
-    Item *items;
+    Bundle *bundles;
     unsigned long long first_block;
 };
 static_assert(sizeof(GroupCells) == 928, "size of GroupCells");
@@ -2065,9 +2065,9 @@ static_assert(PLACE_OF(GroupCells, rays) == 680, "place of GroupCells::rays");
 static_assert(PLACE_OF(GroupCells, hits) == 800, "place of GroupCells::hits");
 static_assert(PLACE_OF(GroupCells, mesh) == 808, "place of GroupCells::mesh");
 static_assert(PLACE_OF(GroupCells, members) == 888, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_items) == 896, "place of GroupCells::tile_items");
+static_assert(PLACE_OF(GroupCells, tile_bundles) == 896, "place of GroupCells::tile_bundles");
 static_assert(PLACE_OF(GroupCells, counts) == 904, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, items) == 912, "place of GroupCells::items");
+static_assert(PLACE_OF(GroupCells, bundles) == 912, "place of GroupCells::bundles");
 static_assert(PLACE_OF(GroupCells, first_block) == 920, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
@@ -2076,11 +2076,11 @@ struct alignas(8) ShortTests {
     const Hit *hits;
     LightMesh mesh;
     const unsigned *members;
-    const Item *items;
+    const Bundle *bundles;
     unsigned *masks;
     Tally tally;
-    unsigned long long first_item;
-    unsigned long long item_count;
+    unsigned long long first_bundle;
+    unsigned long long bundle_count;
 };
 static_assert(sizeof(ShortTests) == 936, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
@@ -2088,19 +2088,19 @@ static_assert(PLACE_OF(ShortTests, rays) == 680, "place of ShortTests::rays");
 static_assert(PLACE_OF(ShortTests, hits) == 800, "place of ShortTests::hits");
 static_assert(PLACE_OF(ShortTests, mesh) == 808, "place of ShortTests::mesh");
 static_assert(PLACE_OF(ShortTests, members) == 888, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, items) == 896, "place of ShortTests::items");
+static_assert(PLACE_OF(ShortTests, bundles) == 896, "place of ShortTests::bundles");
 static_assert(PLACE_OF(ShortTests, masks) == 904, "place of ShortTests::masks");
 static_assert(PLACE_OF(ShortTests, tally) == 912, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_item) == 920, "place of ShortTests::first_item");
-static_assert(PLACE_OF(ShortTests, item_count) == 928, "place of ShortTests::item_count");
+static_assert(PLACE_OF(ShortTests, first_bundle) == 920, "place of ShortTests::first_bundle");
+static_assert(PLACE_OF(ShortTests, bundle_count) == 928, "place of ShortTests::bundle_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
-    const Item *items;
+    const Bundle *bundles;
     const unsigned *masks;
     unsigned long long *marks;
-    unsigned long long first_item;
-    unsigned long long item_count;
+    unsigned long long first_bundle;
+    unsigned long long bundle_count;
     BrickTable table;
     unsigned long long *used;
     unsigned *rank;
@@ -2110,11 +2110,11 @@ struct alignas(8) LightPoints {
 };
 static_assert(sizeof(LightPoints) == 176, "size of LightPoints");
 static_assert(PLACE_OF(LightPoints, mesh) == 0, "place of LightPoints::mesh");
-static_assert(PLACE_OF(LightPoints, items) == 80, "place of LightPoints::items");
+static_assert(PLACE_OF(LightPoints, bundles) == 80, "place of LightPoints::bundles");
 static_assert(PLACE_OF(LightPoints, masks) == 88, "place of LightPoints::masks");
 static_assert(PLACE_OF(LightPoints, marks) == 96, "place of LightPoints::marks");
-static_assert(PLACE_OF(LightPoints, first_item) == 104, "place of LightPoints::first_item");
-static_assert(PLACE_OF(LightPoints, item_count) == 112, "place of LightPoints::item_count");
+static_assert(PLACE_OF(LightPoints, first_bundle) == 104, "place of LightPoints::first_bundle");
+static_assert(PLACE_OF(LightPoints, bundle_count) == 112, "place of LightPoints::bundle_count");
 static_assert(PLACE_OF(LightPoints, table) == 120, "place of LightPoints::table");
 static_assert(PLACE_OF(LightPoints, used) == 136, "place of LightPoints::used");
 static_assert(PLACE_OF(LightPoints, rank) == 144, "place of LightPoints::rank");
@@ -2184,7 +2184,7 @@ struct alignas(8) Interpolate {
     const Hit *hits;
     LightMesh mesh;
     const unsigned *members;
-    const Item *items;
+    const Bundle *bundles;
     const unsigned *masks;
     UsedPoints points;
     const unsigned *slots;
@@ -2204,7 +2204,7 @@ static_assert(PLACE_OF(Interpolate, rays) == 680, "place of Interpolate::rays");
 static_assert(PLACE_OF(Interpolate, hits) == 800, "place of Interpolate::hits");
 static_assert(PLACE_OF(Interpolate, mesh) == 808, "place of Interpolate::mesh");
 static_assert(PLACE_OF(Interpolate, members) == 888, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, items) == 896, "place of Interpolate::items");
+static_assert(PLACE_OF(Interpolate, bundles) == 896, "place of Interpolate::bundles");
 static_assert(PLACE_OF(Interpolate, masks) == 904, "place of Interpolate::masks");
 static_assert(PLACE_OF(Interpolate, points) == 912, "place of Interpolate::points");
 static_assert(PLACE_OF(Interpolate, slots) == 952, "place of Interpolate::slots");

@@ -62,26 +62,26 @@ DEVICE unsigned flags_before(bool flag, unsigned *shared, unsigned &all) {
 // The word of a thread without a surface point; behind all others.
 #define NO_POINT 0xffffffffu
 
-// The item of a tile that a thread begins, if any.
-struct TileItem {
+// The bundle of a tile that a thread begins, if any.
+struct TileBundle {
     bool begins;
-    // Its number, its end among the tile's points, and the number of items in the tile.
+    // Its number, its end among the tile's points, and the number of bundles in the tile.
     unsigned number, end, count;
 };
 
-// Every cell begins an item, and so does every 32nd point after its first. `words` has an entry for each thread, `warps` for each warp.
-DEVICE TileItem item_of_thread(bool is_point, bool first_of_cell, unsigned *words, unsigned *warps) {
+// Every cell begins a bundle, and so does every 32nd point after its first. `words` has an entry for each thread, `warps` for each warp.
+DEVICE TileBundle bundle_of_thread(bool is_point, bool first_of_cell, unsigned *words, unsigned *warps) {
     const unsigned thread = threadIdx.x;
     const unsigned start = largest_before(first_of_cell ? thread : 0, warps);
-    TileItem item;
-    item.begins = is_point && (thread - start) % WARP == 0;
+    TileBundle bundle;
+    bundle.begins = is_point && (thread - start) % WARP == 0;
     unsigned points;
-    item.number = flags_before(item.begins, warps, item.count);
+    bundle.number = flags_before(bundle.begins, warps, bundle.count);
     flags_before(is_point, warps, points);
     __syncthreads();
-    if (item.begins)
-        words[item.number] = thread;
+    if (bundle.begins)
+        words[bundle.number] = thread;
     __syncthreads();
-    item.end = item.number + 1 < item.count ? words[item.number + 1] : points;
-    return item;
+    bundle.end = bundle.number + 1 < bundle.count ? words[bundle.number + 1] : points;
+    return bundle;
 }

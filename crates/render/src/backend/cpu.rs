@@ -10,8 +10,8 @@ use super::{Backend, Probed, SeenOf, WaveOf};
 use crate::antialiasing::Antialiasing;
 use crate::bands;
 use crate::cache::{Cache, HostTable};
+use crate::data::bundles::Bundles;
 use crate::data::cells::CellGroups;
-use crate::data::items::Items;
 use crate::data::light_point_visibility::LightPointVisibility;
 use crate::data::masks::Masks;
 use crate::data::picture::Picture;
@@ -44,7 +44,7 @@ impl Backend for Cpu {
     type Hits = Vec<Hit>;
     type Samples = PixelSamples;
     type Cells = CellGroups;
-    type Items = Items;
+    type Bundles = Bundles;
     type Masks = Masks;
     type Points = UsedPoints;
     type LightPointVisibility = LightPointVisibility;
@@ -119,8 +119,8 @@ impl Backend for Cpu {
         cells.members().len()
     }
 
-    fn item_pieces(&self, items: &Items) -> usize {
-        items.points()
+    fn bundle_pieces(&self, bundles: &Bundles) -> usize {
+        bundles.points()
     }
 
     fn long_test_count(&self, wave: &WaveOf<Cpu>, points: &UsedPoints) -> usize {

@@ -10,7 +10,7 @@ use lightmesh_memory::Budget;
 
 use super::table::{stage_table, stages_on_cuda};
 use super::{
-    Backend, Cuda, DeviceCells, DeviceFilm, DeviceHits, DeviceItems, DeviceLightPointVisibility, DeviceMasks,
+    Backend, Cuda, DeviceBundles, DeviceCells, DeviceFilm, DeviceHits, DeviceLightPointVisibility, DeviceMasks,
     DevicePoints, DeviceRays, DeviceSamples, DeviceScene, DeviceVisibility, Probed, SeenOf, WaveOf,
 };
 use crate::antialiasing::Antialiasing;
@@ -39,7 +39,7 @@ impl<R: Runtime> Backend for Cuda<R> {
     type Hits = DeviceHits<R>;
     type Samples = DeviceSamples<R>;
     type Cells = DeviceCells<R>;
-    type Items = DeviceItems<R>;
+    type Bundles = DeviceBundles<R>;
     type Masks = DeviceMasks<R>;
     type Points = DevicePoints<R>;
     type LightPointVisibility = DeviceLightPointVisibility<R>;
@@ -129,8 +129,8 @@ impl<R: Runtime> Backend for Cuda<R> {
         cells.count
     }
 
-    fn item_pieces(&self, items: &DeviceItems<R>) -> usize {
-        items.count
+    fn bundle_pieces(&self, bundles: &DeviceBundles<R>) -> usize {
+        bundles.count
     }
 
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &DevicePoints<R>) -> usize {

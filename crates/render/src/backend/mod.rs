@@ -13,9 +13,9 @@ use std::ops::Range;
 pub use crate::data::wave::{Seen, Wave};
 pub use crate::gpu::Cuda;
 pub use crate::gpu::DeviceScene;
+pub use crate::gpu::bundles::DeviceBundles;
 pub use crate::gpu::cells::DeviceCells;
 pub use crate::gpu::film::DeviceFilm;
-pub use crate::gpu::items::DeviceItems;
 pub use crate::gpu::light_point_visibility::DeviceLightPointVisibility;
 pub use crate::gpu::masks::DeviceMasks;
 pub use crate::gpu::points::DevicePoints;
@@ -71,7 +71,7 @@ pub trait Backend: Sized {
     /// The surface points of each cell of the light mesh.
     type Cells;
     /// Surface points in small groups.
-    type Items;
+    type Bundles;
     /// Which light points each surface point sees.
     type Masks;
     /// The distinct light points.
@@ -146,8 +146,8 @@ pub trait Backend: Sized {
     /// The cells as units of work, for progress.
     fn cell_pieces(&self, cells: &Self::Cells) -> usize;
 
-    /// The items as units of work, for progress.
-    fn item_pieces(&self, items: &Self::Items) -> usize;
+    /// The bundles as units of work, for progress.
+    fn bundle_pieces(&self, bundles: &Self::Bundles) -> usize;
 
     /// Number of long tests from these light points, to all lights.
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &Self::Points) -> usize;

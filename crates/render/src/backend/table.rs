@@ -43,10 +43,10 @@ macro_rules! stage_table {
             area_shadows(wave: &WaveOf<Self>, target: &ShadowTarget) -> Self::Visibility;
             /// Casts one ray from each surface point to each light, and all that `shadow_rays` casts where neighbours disagree.
             adaptive_shadows(wave: &WaveOf<Self>, target: &ShadowTarget) -> Self::Visibility;
-            /// Puts surface points that are close together into items.
-            items(wave: &WaveOf<Self>) -> Self::Items;
-            /// Finds the same as `area_shadows`, by what stands between an item and the light.
-            occluder_lists(wave: &WaveOf<Self>, items: &Self::Items, target: &ShadowTarget) -> Self::Visibility;
+            /// Puts surface points that are close together into bundles.
+            bundles(wave: &WaveOf<Self>) -> Self::Bundles;
+            /// Finds the same as `area_shadows`, by what stands between a bundle and the light.
+            occluder_lists(wave: &WaveOf<Self>, bundles: &Self::Bundles, target: &ShadowTarget) -> Self::Visibility;
             /// Multiplies visibility by the transmittance of the surfaces of `transmissive`.
             transmittance(wave: &WaveOf<Self>, transmissive: &Self::Scene, target: &ShadowTarget, visibility: Self::Visibility) -> Self::Visibility;
             /// Adds the radiance of each ray to its pixel. Formula (1).

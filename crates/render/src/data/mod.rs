@@ -3,8 +3,8 @@
 //! One file per type: rays and the surface points that they see, surface points by cell, masks, visibility at light points, visibility
 //! at surface points, and images being rendered. [`Wave`] is what every stage works on.
 
+pub(crate) mod bundles;
 pub(crate) mod cells;
-pub(crate) mod items;
 pub(crate) mod light_point_visibility;
 pub(crate) mod lights;
 pub(crate) mod masks;

@@ -1,28 +1,28 @@
 //! The memory plan: the size of every buffer, before the first is allocated.
 //!
 //! It gives the buffers per pixel at the stage that needs most, and how many rows fit into the memory that is free or allowed. The numbers of
-//! light points and items are estimates there. If an image has more, an allocation fails or would exceed the limit; the band is then restarted
+//! light points and bundles are estimates there. If an image has more, an allocation fails or would exceed the limit; the band is then restarted
 //! with half of its rows (`passes.rs`). At one row the error names buffer, size and free memory. Bands are bit-identical to the whole
 //! image. If memory is short although the plan fits, cached light points are dropped first (`backend/run.rs`).
 
 use lightmesh_kernels::Runtime;
 use lightmesh_layout::geometry::{Cone, Hit, ListedRay, Vec3};
-use lightmesh_layout::mesh::Item;
+use lightmesh_layout::mesh::Bundle;
 
 use super::device::Cuda;
 use crate::error::RenderError;
 use crate::plan::Plan;
 use crate::stages::irradiance_cache::cuda;
 
-/// Expected number of surface points per item: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
-const POINTS_PER_ITEM: u64 = 8;
+/// Expected number of surface points per bundle: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
+const POINTS_PER_BUNDLE: u64 = 8;
 /// One part in this many of the free memory is left to others.
 const RESERVE: u64 = 16;
 
 impl<R: Runtime> Cuda<R> {
     /// Number of rows that fit into free memory, or under the limit, in addition to the scene.
     ///
-    /// The estimate of light points and items is an expectation. If an image has more, allocation fails and the band is
+    /// The estimate of light points and bundles is an expectation. If an image has more, allocation fails and the band is
     /// restarted with half of its rows.
     pub(crate) fn rows_that_fit(&self, plan: &Plan) -> Result<u32, RenderError> {
         let fixed = plan.reserved + if plan.gathering.is_some() { cuda::memory_at_once() } else { 0 };
@@ -71,11 +71,11 @@ fn bytes_per_pixel(plan: &Plan) -> u64 {
 
 /// What the light mesh method adds per ray, for a template with masks of `words` words and `bricks` bricks around a cell.
 pub(crate) fn bytes_of_light_mesh(words: usize, bricks: usize, lights: u64) -> u64 {
-    // Members and items of tiles; items with their masks, and the used points and slots of the bricks around them.
-    let grouping = 4 + size_of::<Item>() as u64;
-    let items = (size_of::<Item>() + 32 * 4 * words + (8 + 4) * bricks) as u64 / POINTS_PER_ITEM;
+    // Members and bundles of tiles; bundles with their masks, and the used points and slots of the bricks around them.
+    let grouping = 4 + size_of::<Bundle>() as u64;
+    let bundles = (size_of::<Bundle>() + 32 * 4 * words + (8 + 4) * bricks) as u64 / POINTS_PER_BUNDLE;
     // Half a light point per pixel: its entry and share, and its part of a brick that is a quarter full.
     let points = (8 + 2 * lights + 2 * (8 + 8 + 4 + 8 * lights) / 16) / 2;
     // Shares, light points used, and the list of rays that fall back.
-    grouping + items + points + 4 * lights + 4 + 4
+    grouping + bundles + points + 4 * lights + 4 + 4
 }

@@ -6,11 +6,11 @@
 //! launches split into pieces short enough for any watchdog ([`pieces`]),
 //! and the memory plan ([`memory`]).
 
+pub(crate) mod bundles;
 pub(crate) mod cells;
 mod copy;
 mod device;
 pub(crate) mod film;
-pub(crate) mod items;
 pub(crate) mod light_point_visibility;
 pub(crate) mod masks;
 mod materials;

@@ -1,7 +1,7 @@
 //! Launches in pieces: short enough for a desktop's watchdog, with an opportunity to cancel in between.
 //!
 //! A desktop's watchdog kills launches that take too long, and a launch cannot be cancelled. Every kernel that traces, tests, groups, marks or
-//! shades therefore goes through `in_pieces`, and each launch covers a range of blocks or items. The first launch is small; further pieces are as
+//! shades therefore goes through `in_pieces`, and each launch covers a range of blocks or bundles. The first launch is small; further pieces are as
 //! large as the kernel's measured speed allows for 50 ms, but at most eight times the largest piece measured. Speed is measured per ray or light
 //! where their number varies between images. A launch cannot be shorter than the work of one thread, so a thread casts at most 256 shadow rays or
 //! long tests per launch, and later launches continue where it stopped. Kernels that only count, list or sum use a single launch.

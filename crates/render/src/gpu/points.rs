@@ -14,7 +14,7 @@ pub struct DevicePoints<R: Runtime> {
     pub(crate) used: Buffer<R, u64>,
     pub(crate) rank: Buffer<R, u32>,
     pub(crate) points: Buffer<R, u64>,
-    /// The slot of each brick of the window around each item's cell that has used points.
+    /// The slot of each brick of the window around each bundle's cell that has used points.
     pub(crate) slots: Arc<Buffer<R, u32>>,
     /// S_total.
     pub(crate) count: usize,

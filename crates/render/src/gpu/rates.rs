@@ -19,7 +19,7 @@ const GROWTH: f64 = 8.0;
 /// Work of a kernel that can be split into launches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Work {
-    /// What is split: blocks, or items.
+    /// What is split: blocks, or bundles.
     pub(crate) units: u64,
     /// Cost of a unit, in any measure that makes launches of this kernel comparable: rays or lights per thread.
     pub(crate) cost: u64,

@@ -3,11 +3,11 @@
 
 pub(crate) mod adaptive_shadows;
 pub(crate) mod area_shadows;
+pub(crate) mod bundles;
 pub(crate) mod cells;
 pub(crate) mod fragments;
 pub(crate) mod interpolate;
 pub(crate) mod irradiance_cache;
-pub(crate) mod items;
 pub(crate) mod light_points;
 pub(crate) mod long_tests;
 pub(crate) mod merged_rays;

@@ -1,7 +1,7 @@
 //! Exact area shadows by occluder lists, the default: the triangles that can hide a light are found once for surface points that lie close
 //! together. The same bits as [area mode](super::area).
 //!
-//! This is the place to start reading: `visibility` below is the whole technique. `stages/items/` groups the surface points, and
+//! This is the place to start reading: `visibility` below is the whole technique. `stages/bundles/` groups the surface points, and
 //! `stages/occluder_lists/` finds the triangles between a group and a light and clears the samples that they hide. `docs/method/` explains why.
 
 use lightmesh_layout::constants::{MAX_SEARCH_ROOTS, TILE};
@@ -36,7 +36,7 @@ impl ShadowTechnique for Lists {
     }
 
     fn stages(&self) -> &'static [Stage] {
-        &[Stage::Items, Stage::OccluderLists]
+        &[Stage::Bundles, Stage::OccluderLists]
     }
 
     fn visibility<B: Backend>(
@@ -49,18 +49,18 @@ impl ShadowTechnique for Lists {
         let n = runner.backend.ray_count(wave.rays);
 
         // Which surface points lie close together?
-        let items = runner.stage(Stage::Items, [n; 2], |backend| backend.items(wave))?;
-        let pieces = runner.backend.item_pieces(&items);
+        let bundles = runner.stage(Stage::Bundles, [n; 2], |backend| backend.bundles(wave))?;
+        let pieces = runner.backend.bundle_pieces(&bundles);
 
         // What stands between them and each light?
         let target = wave.shadow_target();
         each_group::<B>(wave, groups, sink, |wave| {
-            runner.stage(Stage::OccluderLists, [n, pieces], |backend| backend.occluder_lists(wave, &items, &target))
+            runner.stage(Stage::OccluderLists, [n, pieces], |backend| backend.occluder_lists(wave, &bundles, &target))
         })
     }
 
     fn bytes_per_ray(&self, lights: u64) -> BytesPerRay {
-        // The ray of each surface point, by tile and in one list; its part of an item, and of where a tile's searches start.
+        // The ray of each surface point, by tile and in one list; its part of a bundle, and of where a tile's searches start.
         let starts = (size_of::<u32>() as u64 * u64::from(MAX_SEARCH_ROOTS + 1) * lights).div_ceil(u64::from(TILE));
         BytesPerRay { host: 12 + 4 * lights, device: 8 + starts + 4 * lights }
     }

@@ -8,8 +8,8 @@
 #include "surface.cuh"
 
 // The sort key of a surface point: 16 bits of its cell's hash, 6 bits of its triangle's, 10 bits of its thread. Points of one
-// triangle are adjacent, so that items have few normals and small boxes. Cells with equal hashes may be interleaved; then they are
-// split into more items, and nothing else changes.
+// triangle are adjacent, so that bundles have few normals and small boxes. Cells with equal hashes may be interleaved; then they are
+// split into more bundles, and nothing else changes.
 DEVICE unsigned sort_word(unsigned long long cell, unsigned triangle, unsigned thread) {
     const unsigned hash = (unsigned)((cell * GOLDEN_RATIO) >> 48);
     // All ones is reserved for threads without a surface point.
@@ -48,20 +48,20 @@ DEVICE void group_points_of_tile(const GroupCells &args) {
     const bool first_of_cell =
         is_point && (thread == 0 || cells[words[thread - 1] & (TILE - 1)] != cell);
 
-    // 3. Every cell begins an item, and so does every 32nd point after its first.
-    const TileItem item = item_of_thread(is_point, first_of_cell, words, warps);
+    // 3. Every cell begins a bundle, and so does every 32nd point after its first.
+    const TileBundle bundle = bundle_of_thread(is_point, first_of_cell, words, warps);
     const unsigned long long place = tile * TILE;
     if (is_point)
         args.members[place + thread] = rays[source];
-    if (item.begins)
-        args.tile_items[place + item.number] = Item{cell, (unsigned)(place + thread), item.end - thread};
+    if (bundle.begins)
+        args.tile_bundles[place + bundle.number] = Bundle{cell, (unsigned)(place + thread), bundle.end - thread};
     if (thread == 0)
-        args.counts[tile] = item.count;
+        args.counts[tile] = bundle.count;
 }
 
-// 4. Copies the items of a tile to their place in the list.
-DEVICE void gather_items_of_tile(const GroupCells &args) {
+// 4. Copies the bundles of a tile to their place in the list.
+DEVICE void gather_bundles_of_tile(const GroupCells &args) {
     const unsigned first = args.counts[blockIdx.x], count = args.counts[blockIdx.x + 1] - first;
     if (threadIdx.x < count)
-        args.items[first + threadIdx.x] = args.tile_items[(unsigned long long)blockIdx.x * TILE + threadIdx.x];
+        args.bundles[first + threadIdx.x] = args.tile_bundles[(unsigned long long)blockIdx.x * TILE + threadIdx.x];
 }

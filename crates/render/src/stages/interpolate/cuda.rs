@@ -1,7 +1,7 @@
-//! Formula (3) on a CUDA device: one warp per item, then long tests where no light point counts.
+//! Formula (3) on a CUDA device: one warp per bundle, then long tests where no light point counts.
 
 use lightmesh_kernels::Runtime;
-use lightmesh_layout::constants::{ITEM_WARPS, MAX_LIGHTS};
+use lightmesh_layout::constants::{BUNDLE_WARPS, MAX_LIGHTS};
 use lightmesh_layout::stages::Interpolate;
 
 use crate::data::wave::Seen;
@@ -22,8 +22,8 @@ pub(crate) type DeviceSeen<'a, R> =
 
 const INTERPOLATE: PerModule = per_module!("interpolate", "interpolate");
 const FALLBACK: PerStructure = per_structure!("interpolate", "fallback");
-/// Items, and blocks of rays, in the first launches.
-const FIRST_ITEMS: u64 = 4096;
+/// Bundles, and blocks of rays, in the first launches.
+const FIRST_BUNDLES: u64 = 4096;
 const FIRST_BLOCKS: u64 = 256;
 
 pub(crate) fn interpolate<R: Runtime>(
@@ -43,7 +43,7 @@ pub(crate) fn interpolate<R: Runtime>(
         hits: wave.hits.hits.input(),
         mesh: cuda.mesh(mesh)?,
         members: cells.members.input(),
-        items: cells.items.input(),
+        bundles: cells.bundles.input(),
         masks: masks.masks.input(),
         points: points.record(),
         slots: points.slots.input(),
@@ -59,7 +59,7 @@ pub(crate) fn interpolate<R: Runtime>(
     };
     // 1. The weighted means.
     let cost = lights.max(1) as u64;
-    let work = Work { units: cells.count as u64, cost, first: FIRST_ITEMS, progress: cells.count as u64 };
+    let work = Work { units: cells.count as u64, cost, first: FIRST_BUNDLES, progress: cells.count as u64 };
     let interpolate = INTERPOLATE.of(wave.scene);
     cuda.bring_lines(interpolate.module, mesh)?;
     cuda.in_pieces(wave.context, interpolate, work, |piece| {
@@ -67,7 +67,7 @@ pub(crate) fn interpolate<R: Runtime>(
         let words = window_bricks(mesh.template.reach()) + MAX_LIGHTS * mesh.template.words() as u32;
         cuda.launch(
             interpolate,
-            warps_for(&piece, ITEM_WARPS, words),
+            warps_for(&piece, BUNDLE_WARPS, words),
             &Interpolate { first: piece.start, count, ..record },
         )
     })?;

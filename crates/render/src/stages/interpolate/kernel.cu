@@ -1,6 +1,6 @@
 // Step 5, first half, on a CUDA device: the weighted mean of what a surface point's light points see. Formula (3).
 //
-// `interpolate`: one warp per item; `fallback_*`: long tests of surface points without usable light points.
+// `interpolate`: one warp per bundle; `fallback_*`: long tests of surface points without usable light points.
 #define ALPHA_TEST 1
 #ifndef INSTANCES
 // Scenes with instances use the module with INSTANCES.
@@ -15,14 +15,14 @@
 #include "light_mesh/lattice.cuh"
 #include "light_mesh/window.cuh"
 #include "shadow/shadow.cuh"
-#include "stages/cells/item.cuh"
+#include "stages/cells/bundle.cuh"
 #include "surface.cuh"
 
 // Tells the fallback to compute a share.
 #define UNKNOWN -1.0f
 
-// Where an item's light points are stored.
-struct ItemPoints {
+// Where a bundle's light points are stored.
+struct BundlePoints {
     IVec3 cell;
     Window window;
     // The table's slot of each brick of the window.
@@ -31,7 +31,7 @@ struct ItemPoints {
 };
 
 // The share of an area light that a light point sees.
-DEVICE float light_point_share(const Interpolate &args, const VisibilityOfLight &lit, const ItemPoints &points, IVec3 point) {
+DEVICE float light_point_share(const Interpolate &args, const VisibilityOfLight &lit, const BundlePoints &points, IVec3 point) {
     const unsigned slot = points.slots[window_place(points.window, point)];
     const unsigned bit = point_bit(point);
     const unsigned long long used = args.points.used[slot];
@@ -52,7 +52,7 @@ struct LitLanes {
     unsigned any, some, not_full;
 };
 
-DEVICE LitLanes lit_lanes(const Interpolate &args, const VisibilityOfLight &lit, const ItemPoints &points) {
+DEVICE LitLanes lit_lanes(const Interpolate &args, const VisibilityOfLight &lit, const BundlePoints &points) {
     LitLanes lanes = {0, 0, 0};
     for (unsigned k = lane_of_thread(); k < args.mesh.points; k += WARP) {
         const unsigned seen = points.seen[k];
@@ -72,7 +72,7 @@ DEVICE LitLanes lit_lanes(const Interpolate &args, const VisibilityOfLight &lit,
 }
 
 // Formula (3) without χ for the lanes in `mixed`; negative if all weights vanish.
-DEVICE float weighted_mean(const Interpolate &args, const VisibilityOfLight &lit, const ItemPoints &points, const Vec3 &position,
+DEVICE float weighted_mean(const Interpolate &args, const VisibilityOfLight &lit, const BundlePoints &points, const Vec3 &position,
                            unsigned mixed) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
@@ -103,7 +103,7 @@ DEVICE float weighted_mean(const Interpolate &args, const VisibilityOfLight &lit
 // 2. A lane's light points that see a light are the common bits of its mask and a word that is the same for the warp. Returns the
 // number of the lane's light points.
 template <unsigned LIGHTS>
-DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, unsigned first, unsigned *lit_words,
+DEVICE unsigned count_lit(const Interpolate &args, const BundlePoints &points, unsigned first, unsigned *lit_words,
                           unsigned (&lit)[LIGHTS]) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
@@ -147,7 +147,7 @@ DEVICE unsigned count_lit(const Interpolate &args, const ItemPoints &points, uns
 
 // 3. The weighted means for the lanes in `mixed`, whose light points do not all see the same.
 template <unsigned LIGHTS>
-DEVICE void weighted_means(const Interpolate &args, const ItemPoints &points, const Vec3 &position, unsigned mixed,
+DEVICE void weighted_means(const Interpolate &args, const BundlePoints &points, const Vec3 &position, unsigned mixed,
                            const unsigned *lit_words, float (&means)[LIGHTS]) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
@@ -175,7 +175,7 @@ DEVICE void weighted_means(const Interpolate &args, const ItemPoints &points, co
 }
 
 // 4. χ; and whether a share remains to be computed. Returns whether that is so.
-DEVICE bool write_share(const Interpolate &args, const ItemLane &lane, unsigned light, float most, float share) {
+DEVICE bool write_share(const Interpolate &args, const BundleLane &lane, unsigned light, float most, float share) {
     share = most == 0.0f ? 0.0f : fminf(share, most);
     if (lane.alive)
         args.share[(unsigned long long)light * args.rays.count + lane.ray] = share;
@@ -184,7 +184,7 @@ DEVICE bool write_share(const Interpolate &args, const ItemLane &lane, unsigned 
 
 // The shares of LIGHTS lights without an area. Returns whether the lane falls back.
 template <unsigned LIGHTS>
-DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned first,
+DEVICE bool lights_without_size(const Interpolate &args, const BundlePoints &points, const BundleLane &lane, unsigned first,
                                 unsigned *lit_words, unsigned &used) {
     const float reach = scene_reach(args.scene, lane.point.origin);
     unsigned lit[LIGHTS] = {};
@@ -214,7 +214,7 @@ DEVICE bool lights_without_size(const Interpolate &args, const ItemPoints &point
 }
 
 // The share of one area light. Returns whether the lane falls back.
-DEVICE bool light_with_size(const Interpolate &args, const ItemPoints &points, const ItemLane &lane, unsigned light) {
+DEVICE bool light_with_size(const Interpolate &args, const BundlePoints &points, const BundleLane &lane, unsigned light) {
     const VisibilityOfLight lit = args.lit[light];
     const unsigned index = lane_of_thread();
     const float reach = scene_reach(args.scene, lane.point.origin);
@@ -244,20 +244,20 @@ DEVICE void list_fallbacks(const Interpolate &args, unsigned ray, bool falls_bac
         args.fallback_rays[place] = ray;
 }
 
-KERNEL(interpolate, Interpolate, ITEM_WARPS * WARP, 8) {
+KERNEL(interpolate, Interpolate, BUNDLE_WARPS * WARP, 8) {
     DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
-    const unsigned long long number = (unsigned long long)blockIdx.x * ITEM_WARPS + threadIdx.x / WARP;
+    const unsigned long long number = (unsigned long long)blockIdx.x * BUNDLE_WARPS + threadIdx.x / WARP;
     if (number >= args.count)
         return;
     const unsigned long long index = args.first + number;
-    const Item item = args.items[index];
-    const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
+    const Bundle bundle = args.bundles[index];
+    const BundleLane own = lane_of_bundle(args.scene, args.rays, args.hits, args.members, bundle);
 
     // 1. The bricks around the cell.
-    ItemPoints points;
-    points.cell = point_of(item.cell);
+    BundlePoints points;
+    points.cell = point_of(bundle.cell);
     points.window = window_around(mesh, points.cell);
     const int bricks = window_size(points.window);
     points.slots = shared + threadIdx.x / WARP * (bricks + MAX_LIGHTS * mesh.words);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use bytemuck::Zeroable;
 use lightmesh_kernels::{Buffer, Kernel, Runtime};
-use lightmesh_layout::constants::ITEM_WARPS;
+use lightmesh_layout::constants::BUNDLE_WARPS;
 use lightmesh_layout::mesh::BrickTable;
 use lightmesh_layout::stages::LightPoints;
 
@@ -20,13 +20,13 @@ use crate::gpu::{BLOCK, Cuda, Work, blocks_for, warps_for};
 use crate::light_mesh::{LightMesh, window_bricks};
 use crate::render_context::RenderContext;
 
-const MARK_ITEMS: Kernel = Kernel { module: "light_points", name: "mark_items" };
+const MARK_BUNDLES: Kernel = Kernel { module: "light_points", name: "mark_bundles" };
 const INSERT: Kernel = Kernel { module: "light_points", name: "insert_bricks" };
 const MARK: Kernel = Kernel { module: "light_points", name: "mark_points" };
 const COUNT: Kernel = Kernel { module: "light_points", name: "count_points" };
 const LIST: Kernel = Kernel { module: "light_points", name: "list_points" };
 
-/// Number of items in the first launch.
+/// Number of bundles in the first launch.
 const FIRST: u64 = 4096;
 /// Slots of the smallest table.
 const MIN_CAPACITY: usize = 1024;
@@ -38,22 +38,22 @@ pub(crate) fn light_points<R: Runtime>(
     masks: &DeviceMasks<R>,
     mesh: &LightMesh,
 ) -> Result<DevicePoints<R>, RenderError> {
-    // 1. The used points of each brick around each item's cell.
-    let bricks_of_item = window_bricks(mesh.template.reach());
-    let marks = cuda.pool().room("used points around items", cells.count * bricks_of_item as usize)?;
+    // 1. The used points of each brick around each bundle's cell.
+    let bricks_of_bundle = window_bricks(mesh.template.reach());
+    let marks = cuda.pool().room("used points around bundles", cells.count * bricks_of_bundle as usize)?;
     let record = LightPoints {
         mesh: cuda.mesh(mesh)?,
-        items: cells.items.input(),
+        bundles: cells.bundles.input(),
         masks: masks.masks.input(),
         marks: marks.output(),
-        item_count: cells.count as u64,
+        bundle_count: cells.count as u64,
         ..LightPoints::zeroed()
     };
     let work = Work { units: cells.count as u64, cost: 1, first: FIRST, progress: cells.count as u64 };
-    cuda.in_pieces(context, MARK_ITEMS, work, |piece| {
-        let item_count = piece.end - piece.start;
-        let launch = warps_for(&piece, ITEM_WARPS, 2 * bricks_of_item);
-        cuda.launch(MARK_ITEMS, launch, &LightPoints { first_item: piece.start, item_count, ..record })
+    cuda.in_pieces(context, MARK_BUNDLES, work, |piece| {
+        let bundle_count = piece.end - piece.start;
+        let launch = warps_for(&piece, BUNDLE_WARPS, 2 * bricks_of_bundle);
+        cuda.launch(MARK_BUNDLES, launch, &LightPoints { first_bundle: piece.start, bundle_count, ..record })
     })?;
     // 2. The bricks that hold a used point, in a table that is at most half full.
     let mut capacity = cells.count.next_power_of_two().max(MIN_CAPACITY);
@@ -62,7 +62,7 @@ pub(crate) fn light_points<R: Runtime>(
         let bricks = cuda.pool().zeros("number of bricks", 1)?;
         let table = BrickTable { keys: keys.output(), capacity: capacity as u32, spare: 0 };
         let record = LightPoints { table, bricks: bricks.output(), ..record };
-        each_item(cuda, context, INSERT, &record)?;
+        each_bundle(cuda, context, INSERT, &record)?;
         let mut count = [0u32];
         bricks.read_into(0, &mut count)?;
         if count[0] as usize <= capacity / 2 {
@@ -72,9 +72,9 @@ pub(crate) fn light_points<R: Runtime>(
     };
     // 3. The used points in each. The order of marking does not matter to an "or".
     let used = cuda.pool().zeros("used light points", capacity)?;
-    let slots = cuda.pool().room("bricks around items", marks.len())?;
+    let slots = cuda.pool().room("bricks around bundles", marks.len())?;
     let record = LightPoints { used: used.output(), slots: slots.output(), ..record };
-    each_item(cuda, context, MARK, &record)?;
+    each_bundle(cuda, context, MARK, &record)?;
     // 4. and 5. Ranks, and the list.
     let points = listed(cuda, (Arc::new(keys), Arc::new(slots)), used)?;
     Tally::add(&context.tally.light_points, points.count as u64);
@@ -90,7 +90,7 @@ pub(crate) fn only<R: Runtime>(
     listed(cuda, (Arc::clone(&points.keys), Arc::clone(&points.slots)), used)
 }
 
-/// Keys of a table, and the slots of the bricks of each item's window.
+/// Keys of a table, and the slots of the bricks of each bundle's window.
 type Bricks<R> = (Arc<Buffer<R, u64>>, Arc<Buffer<R, u32>>);
 
 /// Ranks and list of used points in a table.
@@ -113,18 +113,18 @@ fn listed<R: Runtime>(
     Ok(DevicePoints { keys, used, rank, points, slots, count })
 }
 
-/// Launches a kernel with one thread per brick of an item's window, over all items.
-fn each_item<R: Runtime>(
+/// Launches a kernel with one thread per brick of a bundle's window, over all bundles.
+fn each_bundle<R: Runtime>(
     cuda: &Cuda<R>,
     context: &RenderContext,
     kernel: Kernel,
     record: &LightPoints,
 ) -> Result<(), RenderError> {
-    let work = Work { units: record.item_count, cost: 1, first: FIRST, progress: 0 };
+    let work = Work { units: record.bundle_count, cost: 1, first: FIRST, progress: 0 };
     cuda.in_pieces(context, kernel, work, |piece| {
-        let item_count = piece.end - piece.start;
-        let bricks = item_count * u64::from(window_bricks(record.mesh.reach));
+        let bundle_count = piece.end - piece.start;
+        let bricks = bundle_count * u64::from(window_bricks(record.mesh.reach));
         let launch = blocks_for(&(0..bricks.div_ceil(u64::from(BLOCK))), BLOCK);
-        cuda.launch(kernel, launch, &LightPoints { first_item: piece.start, item_count, ..*record })
+        cuda.launch(kernel, launch, &LightPoints { first_bundle: piece.start, bundle_count, ..*record })
     })
 }

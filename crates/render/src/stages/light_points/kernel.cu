@@ -1,8 +1,8 @@
 // Step 3 on a CUDA device: each light point that some surface point uses, once. Formula (7).
 //
-// 1. `mark_items`: the used points of each brick around each item's cell.
+// 1. `mark_bundles`: the used points of each brick around each bundle's cell.
 // 2. `insert_bricks`: the bricks that hold a used point, in a table.
-// 3. `mark_points`: the used points in each, and for each item the slots of its bricks.
+// 3. `mark_points`: the used points in each, and for each bundle the slots of its bricks.
 // 4. `count_points`, then a scan: ranks.
 // 5. `list_points`: all of them.
 //
@@ -14,15 +14,15 @@
 #include "light_mesh/window.cuh"
 
 // Shared memory of a warp: two words per brick, since there is no 64-bit "or" in shared memory.
-KERNEL(mark_items, LightPoints, WARP * ITEM_WARPS, 8) {
+KERNEL(mark_bundles, LightPoints, WARP * BUNDLE_WARPS, 8) {
     DYNAMIC_SHARED(unsigned, shared);
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
-    const unsigned long long number = (unsigned long long)blockIdx.x * ITEM_WARPS + threadIdx.x / WARP;
-    if (number >= args.item_count)
+    const unsigned long long number = (unsigned long long)blockIdx.x * BUNDLE_WARPS + threadIdx.x / WARP;
+    if (number >= args.bundle_count)
         return;
-    const unsigned long long index = args.first_item + number;
-    const IVec3 cell = point_of(args.items[index].cell);
+    const unsigned long long index = args.first_bundle + number;
+    const IVec3 cell = point_of(args.bundles[index].cell);
     const Window window = window_around(mesh, cell);
     const unsigned bricks = window_size(window);
     unsigned *marks = shared + threadIdx.x / WARP * 2 * bricks;
@@ -67,10 +67,10 @@ DEVICE void insert(const LightPoints &args, unsigned long long key) {
     atomicOr(args.bricks, 0x80000000u);
 }
 
-// A brick of the window around an item's cell.
+// A brick of the window around a bundle's cell.
 struct WindowBrick {
     unsigned long long key;
-    // Its points that the item's surface points use.
+    // Its points that the bundle's surface points use.
     unsigned long long points;
     // Its index among all of the launch's windows.
     unsigned long long index;
@@ -81,11 +81,11 @@ DEVICE bool brick_of_thread(const LightPoints &args, WindowBrick &brick) {
     const int side = window_side(args.mesh);
     const unsigned bricks = side * side * side;
     const unsigned number = blockIdx.x * blockDim.x + threadIdx.x;
-    if (number >= args.item_count * bricks)
+    if (number >= args.bundle_count * bricks)
         return false;
-    brick.index = args.first_item * bricks + number;
+    brick.index = args.first_bundle * bricks + number;
     brick.points = args.marks[brick.index];
-    const IVec3 cell = point_of(args.items[args.first_item + number / bricks].cell);
+    const IVec3 cell = point_of(args.bundles[args.first_bundle + number / bricks].cell);
     brick.key = window_key(window_around(args.mesh, cell), number % bricks);
     return true;
 }

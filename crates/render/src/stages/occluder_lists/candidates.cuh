@@ -5,7 +5,7 @@
 #include "accel/region_filter.cuh"
 #include "shadow/occlusion.cuh"
 
-// The boxes of an item and an emitter.
+// The boxes of a bundle and an emitter.
 struct Shaft {
     // The middle of the box around the surface points, and half its edges.
     Vec3 middle, half;

@@ -31,7 +31,7 @@ use lightmesh_scene::Bounds;
 use lightmesh_trace::accel::{CHUNK, TangentPlanes, Triangle};
 use lightmesh_trace::simd::{Axes, cross, difference, dot, fused_dot, load, scaled, splat, sum};
 
-/// The boxes of an item and an emitter.
+/// The boxes of a bundle and an emitter.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shaft {
     /// The middle of the box around the surface points.

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::candidates::{Candidates, above_planes};
 use super::group::{Group, View};
 use crate::counters::Tally;
-use crate::data::items::Items;
+use crate::data::bundles::Bundles;
 use crate::data::visibility::Visibility;
 use crate::data::wave::HostWave;
 use crate::shadow::ShadowTarget;
@@ -25,11 +25,11 @@ use crate::shadow::terminator::ShadowPoint;
 use crate::shadow::weights::Weighed;
 use crate::surface::SurfacePoint;
 
-/// Items per task.
+/// Bundles per task.
 const RUN: usize = 16;
 /// Number of candidates after which lists are compared with rays for the first time.
 const FIRST_CHECK: u32 = 48;
-/// Groups of lanes of an item.
+/// Groups of lanes of a bundle.
 const GROUPS: usize = WARP as usize / LANES;
 
 // What steps cost on a core with AVX2, nanoseconds; only their ratios matter.
@@ -50,18 +50,18 @@ const MIN_RAY_COST: u32 = 50;
 const MIN_COST_RATIO: f64 = 2.0;
 
 /// The visible share of each light from each surface point.
-pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, target: &ShadowTarget) -> Visibility {
+pub(crate) fn occluder_lists(wave: &HostWave, bundles: &Bundles, target: &ShadowTarget) -> Visibility {
     let rows = wave.rows(target);
     let emitters = Emitter::all(wave, target, &rows);
     let level = Level::new();
     // Each share has one writer.
     let rays = wave.hits.len();
     let shares: Vec<AtomicU32> = (0..emitters.len() * rays).map(|_| AtomicU32::new(0)).collect();
-    (0..items.len().div_ceil(RUN)).into_par_iter().for_each(|run| {
-        let run = run * RUN..items.len().min((run + 1) * RUN);
-        let points = run.clone().map(|item| items.members(item).len()).sum();
+    (0..bundles.len().div_ceil(RUN)).into_par_iter().for_each(|run| {
+        let run = run * RUN..bundles.len().min((run + 1) * RUN);
+        let points = run.clone().map(|bundle| bundles.members(bundle).len()).sum();
         wave.context.piece(points, || {
-            let run = run.map(|item| items.members(item));
+            let run = run.map(|bundle| bundles.members(bundle));
             dispatch!(level, simd => shares_of_run(simd, wave, &emitters, run, &shares));
         });
     });
@@ -70,7 +70,7 @@ pub(crate) fn occluder_lists(wave: &HostWave, items: &Items, target: &ShadowTarg
     Visibility { rays, lights: wave.group(), share, weighed: true, ..Visibility::default() }
 }
 
-/// Writes the visible shares of all emitters from the surface points of some items.
+/// Writes the visible shares of all emitters from the surface points of some bundles.
 #[inline(always)]
 fn shares_of_run<'a, S: Simd>(
     simd: S,
@@ -79,21 +79,21 @@ fn shares_of_run<'a, S: Simd>(
     run: impl Iterator<Item = &'a [u32]>,
     shares: &[AtomicU32],
 ) {
-    let mut item = Item::new(simd, wave, emitters.len());
+    let mut bundle = Bundle::new(simd, wave, emitters.len());
     for members in run {
-        item.take(members);
+        bundle.take(members);
         let lights = shares.chunks_exact(wave.hits.len());
         for ((number, emitter), shares) in emitters.iter().enumerate().zip(lights) {
-            for (&ray, &share) in members.iter().zip(&item.shares(number, emitter)) {
+            for (&ray, &share) in members.iter().zip(&bundle.shares(number, emitter)) {
                 shares[ray as usize].store(share.to_bits(), Ordering::Relaxed);
             }
         }
     }
-    Tally::add(&wave.context.tally.shadow_rays, item.asked);
+    Tally::add(&wave.context.tally.shadow_rays, bundle.asked);
 }
 
-/// The surface points of an item.
-struct Item<'a, S: Simd> {
+/// The surface points of a bundle.
+struct Bundle<'a, S: Simd> {
     simd: S,
     wave: &'a HostWave<'a>,
     members: &'a [u32],
@@ -133,15 +133,15 @@ struct Around {
     planes: TangentPlanes,
 }
 
-impl<'a, S: Simd> Item<'a, S> {
+impl<'a, S: Simd> Bundle<'a, S> {
     #[inline(always)]
-    fn new(simd: S, wave: &'a HostWave<'a>, emitters: usize) -> Item<'a, S> {
+    fn new(simd: S, wave: &'a HostWave<'a>, emitters: usize) -> Bundle<'a, S> {
         let groups = std::array::from_fn(
             #[inline(always)]
             |_| Group::new(simd),
         );
         let around = Around { lanes: 0, origins: Bounds::EMPTY, planes: TangentPlanes::NONE };
-        Item {
+        Bundle {
             simd,
             wave,
             members: &[],
@@ -299,7 +299,7 @@ impl<'a, S: Simd> Item<'a, S> {
         if !dearer(f64::from(MIN_RAY_COST)) {
             return false;
         }
-        // What a ray costs is found by casting a few, once for several items.
+        // What a ray costs is found by casting a few, once for several bundles.
         let mut rays = SampleRays::default();
         if self.prices[view.number] == 0.0 {
             self.cast(view, bvh, (&mut rays, 1), 1);

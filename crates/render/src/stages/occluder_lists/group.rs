@@ -1,4 +1,4 @@
-//! Eight surface points of an item, and what they see of an emitter.
+//! Eight surface points of a bundle, and what they see of an emitter.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, mask32x8, u32x8};
@@ -32,7 +32,7 @@ pub(super) struct Group<S: Simd> {
     normal: Axes<S>,
     /// The lanes that have a surface point.
     has: u32,
-    /// Whether the light is projected: that is done when it is needed, since most items find nothing between them and a light.
+    /// Whether the light is projected: that is done when it is needed, since most bundles find nothing between them and a light.
     looked: bool,
     shaft: Shaft,
     projected: [ProjectedLight; LANES],

@@ -1,9 +1,9 @@
-//! Shadows of lights with a size, by lists of the triangles that can hide a light from the surface points of an item.
+//! Shadows of lights with a size, by lists of the triangles that can hide a light from the surface points of a bundle.
 //!
-//! In: rays, hits and [`Items`](crate::data::items::Items). Out: [`Visibility`](crate::data::visibility::Visibility), the same bits as that of
+//! In: rays, hits and [`Bundles`](crate::data::bundles::Bundles). Out: [`Visibility`](crate::data::visibility::Visibility), the same bits as that of
 //! [`area_shadows`](super::area_shadows).
 //!
-//! For an item and a light:
+//! For a bundle and a light:
 //!
 //! 1. Which samples does each surface point see if nothing is in the way: those in front of the surface.
 //! 2. Search: the triangles in the shaft between the box around the points that see any, and that around the emitter, above the tangent

@@ -16,11 +16,11 @@
 
 // 3. Occluders. Returns whether the lane tested any triangle.
 template <class Structure>
-DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, const CellItem &item, const ItemLane &lane,
+DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, const CellBundle &bundle, const BundleLane &lane,
                            const CellMemory &memory) {
     const LightMesh &mesh = args.mesh;
-    const auto near = region_near(Bounds{item.low, item.high}, mesh.radius + mesh.slack);
-    const auto region = region_above(near, item.planes, mesh.slack);
+    const auto near = region_near(Bounds{bundle.low, bundle.high}, mesh.radius + mesh.slack);
+    const auto region = region_above(near, bundle.planes, mesh.slack);
     // Unfiltered: choosing candidates tests triangles more strictly than a filter would.
     auto search = begin_search(structure, region, memory.search);
     bool asked = false;
@@ -30,23 +30,23 @@ DEVICE bool test_occluders(const ShortTests &args, const Structure &structure, c
             next_triangles<false>(structure, region, search, memory.found, found);
         unsigned count = min(found, WARP);
         found -= count;
-        const unsigned rows = choose_candidates(mesh, item, structure, memory, found, count);
-        asked |= test_candidates(args, alpha_mask_of(structure), item, lane, memory, rows);
+        const unsigned rows = choose_candidates(mesh, bundle, structure, memory, found, count);
+        asked |= test_candidates(args, alpha_mask_of(structure), bundle, lane, memory, rows);
         __syncwarp();
     }
     return asked;
 }
 
 template <bool SHARED_MASKS, class Structure>
-DEVICE void short_tests_of_item(const ShortTests &args, const Structure &structure) {
+DEVICE void short_tests_of_bundle(const ShortTests &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
-    // The last come first: slow items are more often in the lower part of an image (in Childpark this saves a tenth), and if one
+    // The last come first: slow bundles are more often in the lower part of an image (in Childpark this saves a tenth), and if one
     // begins late, the device waits for it alone.
-    const unsigned long long index = args.first_item + (args.item_count - 1 - blockIdx.x);
+    const unsigned long long index = args.first_bundle + (args.bundle_count - 1 - blockIdx.x);
     const CellMemory memory = cell_memory<SHARED_MASKS>(args, structure, shared, index);
-    const Item item = args.items[index];
-    const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
-    const CellItem shape = cell_item(args.mesh, item, own, memory.planes);
+    const Bundle bundle = args.bundles[index];
+    const BundleLane own = lane_of_bundle(args.scene, args.rays, args.hits, args.members, bundle);
+    const CellBundle shape = cell_bundle(args.mesh, bundle, own, memory.planes);
 
     // 1, 2. The half-balls.
     const unsigned size = half_balls(args.mesh, shape, own, memory.seen);
@@ -61,11 +61,11 @@ DEVICE void short_tests_of_item(const ShortTests &args, const Structure &structu
 
 template <class Structure>
 DEVICE void short_tests_by_cell(const ShortTests &args, const Structure &structure) {
-    short_tests_of_item<true>(args, structure);
+    short_tests_of_bundle<true>(args, structure);
 }
 
 // For templates whose masks do not fit into shared memory.
 template <class Structure>
 DEVICE void short_tests_by_cell_large(const ShortTests &args, const Structure &structure) {
-    short_tests_of_item<false>(args, structure);
+    short_tests_of_bundle<false>(args, structure);
 }

@@ -1,4 +1,4 @@
-// The triangles that can hide light points from an item's surface points, each with the box of these light points: twin of cells.rs.
+// The triangles that can hide light points from a bundle's surface points, each with the box of these light points: twin of cells.rs.
 #pragma once
 
 #include "light_mesh/lattice.cuh"
@@ -9,20 +9,20 @@
 #define BOX_BIAS (MAX_REACH - 1)
 
 // Whether the plane of a triangle comes nearer than `reach` to the box around the origins.
-DEVICE bool plane_is_near(const CellItem &item, const Vec3 &a, const Vec3 &b, const Vec3 &c, float reach) {
+DEVICE bool plane_is_near(const CellBundle &bundle, const Vec3 &a, const Vec3 &b, const Vec3 &c, float reach) {
     const Vec3 normal = cross(b - a, c - a);
-    const Vec3 center = 0.5f * (item.low + item.high), extent = item.high - item.low;
+    const Vec3 center = 0.5f * (bundle.low + bundle.high), extent = bundle.high - bundle.low;
     const float apart = fabsf(dot(normal, center - a)) - 0.5f * dot(abs(normal), extent);
     return apart <= 0.0f || apart * apart <= reach * reach * dot(normal, normal);
 }
 
 // Whether a triangle certainly lies on or behind the tangent planes of all surface points.
-DEVICE bool is_behind(const CellItem &item, const Vec3 &a, const Vec3 &b, const Vec3 &c) {
-    bool behind = item.planes.count != 0;
-    const Vec3 from_a = a - item.low, from_b = b - item.low, from_c = c - item.low, extent = item.high - item.low;
+DEVICE bool is_behind(const CellBundle &bundle, const Vec3 &a, const Vec3 &b, const Vec3 &c) {
+    bool behind = bundle.planes.count != 0;
+    const Vec3 from_a = a - bundle.low, from_b = b - bundle.low, from_c = c - bundle.low, extent = bundle.high - bundle.low;
     const Vec3 size = max(max(abs(from_a), abs(from_b)), abs(from_c)) + extent;
-    for (unsigned i = 0; i < item.planes.count; i++) {
-        const float4 plane = item.planes.memory->planes[i];
+    for (unsigned i = 0; i < bundle.planes.count; i++) {
+        const float4 plane = bundle.planes.memory->planes[i];
         const Vec3 normal = {plane.x, plane.y, plane.z};
         // Relative to the box, so that rounding is relative to the size of the box and the triangle: 8 ε bounds that of both products.
         const float top = fmaxf(fmaxf(dot(normal, from_a), dot(normal, from_b)), dot(normal, from_c));
@@ -31,7 +31,7 @@ DEVICE bool is_behind(const CellItem &item, const Vec3 &a, const Vec3 &b, const 
     return behind;
 }
 
-// One axis of the box of light points, as offsets from the cell, that a triangle can hide from the item's surface points: see
+// One axis of the box of light points, as offsets from the cell, that a triangle can hide from the bundle's surface points: see
 // `shadow_box` in cells.rs. `most` is the largest factor by which a shadow is stretched.
 DEVICE Span span_to(float low, float high, float a, float b, float c, float slack) {
     return Span{fminf(fminf(a, b), c) - high - slack, fmaxf(fmaxf(a, b), c) - low + slack};
@@ -63,13 +63,13 @@ DEVICE void span_in_steps(const LightMesh &mesh, float inverse_step, const Span 
 }
 
 // The box of light points that a triangle can hide, packed: six numbers of five bits, each offset + BOX_BIAS; `false` if there is none.
-DEVICE bool shadow_box(const LightMesh &mesh, const CellItem &item, const Vec3 &a, const Vec3 &b, const Vec3 &c, unsigned &box,
+DEVICE bool shadow_box(const LightMesh &mesh, const CellBundle &bundle, const Vec3 &a, const Vec3 &b, const Vec3 &c, unsigned &box,
                        Span &own_x, Span &own_y, Span &own_z, float &most) {
     const float reach = mesh.radius + mesh.slack;
     // 1. All q - P.
-    Span x = span_to(item.low.x, item.high.x, a.x, b.x, c.x, mesh.slack);
-    Span y = span_to(item.low.y, item.high.y, a.y, b.y, c.y, mesh.slack);
-    Span z = span_to(item.low.z, item.high.z, a.z, b.z, c.z, mesh.slack);
+    Span x = span_to(bundle.low.x, bundle.high.x, a.x, b.x, c.x, mesh.slack);
+    Span y = span_to(bundle.low.y, bundle.high.y, a.y, b.y, c.y, mesh.slack);
+    Span z = span_to(bundle.low.z, bundle.high.z, a.z, b.z, c.z, mesh.slack);
     own_x = x;
     own_y = y;
     own_z = z;
@@ -83,9 +83,9 @@ DEVICE bool shadow_box(const LightMesh &mesh, const CellItem &item, const Vec3 &
     stretch(z, most, reach);
     // 3. In steps from the cell.
     int x0, x1, y0, y1, z0, z1;
-    span_in_steps(mesh, item.inverse_step, x, item.low.x, item.high.x, mesh.anchor.x, item.cell.x, x0, x1);
-    span_in_steps(mesh, item.inverse_step, y, item.low.y, item.high.y, mesh.anchor.y, item.cell.y, y0, y1);
-    span_in_steps(mesh, item.inverse_step, z, item.low.z, item.high.z, mesh.anchor.z, item.cell.z, z0, z1);
+    span_in_steps(mesh, bundle.inverse_step, x, bundle.low.x, bundle.high.x, mesh.anchor.x, bundle.cell.x, x0, x1);
+    span_in_steps(mesh, bundle.inverse_step, y, bundle.low.y, bundle.high.y, mesh.anchor.y, bundle.cell.y, y0, y1);
+    span_in_steps(mesh, bundle.inverse_step, z, bundle.low.z, bundle.high.z, mesh.anchor.z, bundle.cell.z, z0, z1);
     box = (unsigned)(x0 + BOX_BIAS) | (unsigned)(x1 + BOX_BIAS) << 5 | (unsigned)(y0 + BOX_BIAS) << 10 |
           (unsigned)(y1 + BOX_BIAS) << 15 | (unsigned)(z0 + BOX_BIAS) << 20 | (unsigned)(z1 + BOX_BIAS) << 25;
     return x0 <= x1 && y0 <= y1 && z0 <= z1;
@@ -99,7 +99,7 @@ DEVICE int box_bound(unsigned box, int index) {
 // 3. b. Lanes take up to 32 of the triangles found; those that can matter are kept as candidates. Returns how many rows of light
 // points the lane's candidate reaches; candidates are in the order of the lanes, and `count` becomes their number.
 template <class Structure>
-DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, const Structure &structure, const CellMemory &memory,
+DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellBundle &bundle, const Structure &structure, const CellMemory &memory,
                                   unsigned first, unsigned &count) {
     const unsigned lane = lane_of_thread();
     bool kept = false;
@@ -110,8 +110,8 @@ DEVICE unsigned choose_candidates(const LightMesh &mesh, const CellItem &item, c
     if (lane < count) {
         corners = load_corners(triangle_at(structure, memory.found[first + lane]));
         const Vec3 a = corners.a, b = corners.b, c = corners.c;
-        kept = !is_behind(item, a, b, c) && plane_is_near(item, a, b, c, mesh.radius + mesh.slack) &&
-               shadow_box(mesh, item, a, b, c, box, x, y, z, most);
+        kept = !is_behind(bundle, a, b, c) && plane_is_near(bundle, a, b, c, mesh.radius + mesh.slack) &&
+               shadow_box(mesh, bundle, a, b, c, box, x, y, z, most);
     }
     const unsigned lanes = __ballot_sync(ALL_LANES, kept);
     if (kept) {

@@ -14,7 +14,7 @@ use crate::gpu::{Cuda, PerModule, PerStructure, Work, per_module, per_structure,
 use crate::light_mesh::LightMesh;
 use crate::settings;
 
-const HALF_BALLS: PerModule = per_module!("short_tests", "half_balls_of_items");
+const HALF_BALLS: PerModule = per_module!("short_tests", "half_balls_of_bundles");
 const BY_CELL: PerStructure = per_structure!("short_tests", "short_tests_by_cell");
 /// For templates whose masks do not fit into shared memory: the masks stay in global memory, where they end up anyway.
 const BY_CELL_LARGE: PerStructure = per_structure!("short_tests", "short_tests_by_cell_large");
@@ -23,8 +23,8 @@ const PLAIN: PerStructure = per_structure!("short_tests", "short_tests_plain");
 const WARPS: u32 = 1;
 /// Shared memory that every device gives a block, bytes.
 const SHARED_MEMORY: u32 = 48 << 10;
-/// Items of the very first launches.
-const FIRST_ITEMS: u64 = 1024;
+/// Bundles of the very first launches.
+const FIRST_BUNDLES: u64 = 1024;
 
 pub(crate) fn short_tests<R: Runtime>(
     cuda: &Cuda<R>,
@@ -51,25 +51,25 @@ pub(crate) fn short_tests<R: Runtime>(
         hits: wave.hits.hits.input(),
         mesh: cuda.mesh(mesh)?,
         members: cells.members.input(),
-        items: cells.items.input(),
+        bundles: cells.bundles.input(),
         masks: masks.output(),
         tally: cuda.tally()?,
-        first_item: 0,
-        item_count: 0,
+        first_bundle: 0,
+        bundle_count: 0,
     };
-    let each_item = |kernel, shared, progress| {
-        let work = Work { units: cells.count as u64, cost: 1, first: FIRST_ITEMS, progress };
+    let each_bundle = |kernel, shared, progress| {
+        let work = Work { units: cells.count as u64, cost: 1, first: FIRST_BUNDLES, progress };
         cuda.in_pieces(wave.context, kernel, work, |piece| {
-            let item_count = piece.end - piece.start;
-            let arguments = ShortTests { first_item: piece.start, item_count, ..record };
+            let bundle_count = piece.end - piece.start;
+            let arguments = ShortTests { first_bundle: piece.start, bundle_count, ..record };
             cuda.launch(kernel, warps_for(&piece, WARPS, shared), &arguments)
         })
     };
     cuda.bring_lines(kernels.of(scene).module, mesh)?;
     if !by_cell {
-        each_item(HALF_BALLS.of(scene), 0, 0)?;
+        each_bundle(HALF_BALLS.of(scene), 0, 0)?;
     }
-    each_item(kernels.of(scene), shared, cells.count as u64)?;
+    each_bundle(kernels.of(scene), shared, cells.count as u64)?;
     Ok(DeviceMasks { masks, words })
 }
 

@@ -4,7 +4,7 @@
 #include "cuda/tally.cuh"
 #include "light_mesh/template.cuh"
 
-// 4. Writes the masks of an item's surface points. Returns how many bits the lane wrote.
+// 4. Writes the masks of a bundle's surface points. Returns how many bits the lane wrote.
 DEVICE unsigned write_masks(const ShortTests &args, unsigned long long index, const unsigned *seen) {
     const unsigned points = 32 * args.mesh.words;
     unsigned used = 0;

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "accel/search.cuh"
-#include "stages/short_tests/cell_item.cuh"
+#include "stages/short_tests/cell_bundle.cuh"
 
 // Follows the last target.
 #define NO_TARGET 0xffffffffu
 
-// A triangle that can matter: its corners, and all q - P with q on it and P an origin of the item.
+// A triangle that can matter: its corners, and all q - P with q on it and P an origin of the bundle.
 struct Candidate {
     // The w components hold the packed box of light points that it can hide, then low and high x of q - P.
     float4 corners[3];
@@ -36,11 +36,11 @@ struct CellMemory {
     unsigned *search;
 };
 
-// Divides a block's shared memory, as `shared_words` in cuda.rs counts it. A block is one warp: items differ in cost, and a block
+// Divides a block's shared memory, as `shared_words` in cuda.rs counts it. A block is one warp: bundles differ in cost, and a block
 // keeps its place until its last warp is done. Whether masks are kept in it is a template parameter, so that the compiler knows
 // what kind of memory they are in.
 template <bool SHARED_MASKS, class Structure>
-DEVICE CellMemory cell_memory(const ShortTests &args, const Structure &structure, unsigned *shared, unsigned long long item) {
+DEVICE CellMemory cell_memory(const ShortTests &args, const Structure &structure, unsigned *shared, unsigned long long bundle) {
     const unsigned candidates = CANDIDATE_WORDS * CANDIDATES, targets = TARGET_WORDS * (LISTED_TARGETS + 1);
     CellMemory memory;
     memory.candidates = (Candidate *)shared;
@@ -48,7 +48,7 @@ DEVICE CellMemory cell_memory(const ShortTests &args, const Structure &structure
     memory.planes = (PlanesMemory *)(shared + candidates + targets);
     memory.found = shared + candidates + targets + PLANE_WORDS;
     memory.search = memory.found + FOUND_TRIANGLES;
-    memory.seen = SHARED_MASKS ? memory.search + search_words(structure) : args.masks + item * 32 * args.mesh.words;
+    memory.seen = SHARED_MASKS ? memory.search + search_words(structure) : args.masks + bundle * 32 * args.mesh.words;
     return memory;
 }
 

@@ -8,14 +8,14 @@
 #include "stages/short_tests/masks.cuh"
 
 // 1, 2. The half-balls.
-DEVICE void half_balls_of_item(const ShortTests &args) {
-    const unsigned long long index = args.first_item + blockIdx.x;
-    const Item item = args.items[index];
-    CellItem shape;
-    shape.cell = point_of(item.cell);
+DEVICE void half_balls_of_bundle(const ShortTests &args) {
+    const unsigned long long index = args.first_bundle + blockIdx.x;
+    const Bundle bundle = args.bundles[index];
+    CellBundle shape;
+    shape.cell = point_of(bundle.cell);
     // Finding out whether planes are shared does not pay here.
     shape.planes.count = 0;
-    const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
+    const BundleLane own = lane_of_bundle(args.scene, args.rays, args.hits, args.members, bundle);
     const unsigned size = half_balls(args.mesh, shape, own, args.masks + index * 32 * args.mesh.words);
     count_short_tests(args.tally, size, 0, size);
 }
@@ -25,10 +25,10 @@ template <typename Structure>
 DEVICE void short_tests_plain(const ShortTests &args, const Structure &structure) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
-    const unsigned long long index = args.first_item + blockIdx.x;
-    const Item item = args.items[index];
-    const IVec3 cell = point_of(item.cell);
-    const ItemLane own = lane_of_item(args.scene, args.rays, args.hits, args.members, item);
+    const unsigned long long index = args.first_bundle + blockIdx.x;
+    const Bundle bundle = args.bundles[index];
+    const IVec3 cell = point_of(bundle.cell);
+    const BundleLane own = lane_of_bundle(args.scene, args.rays, args.hits, args.members, bundle);
     const ShortTest test = {own.point.origin, own.point.normal, mesh.edge_on};
     unsigned *seen = args.masks + index * 32 * mesh.words;
     for (unsigned row = 0; row < mesh.lines; row++) {

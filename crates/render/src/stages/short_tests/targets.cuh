@@ -22,19 +22,19 @@ DEVICE void narrow(float low, float high, float inverse_low, float inverse_high,
 //
 // A hidden light point lies at P + s (q - P) with s >= 1 (`shadow_box` in cells.rs). Its y and z, which are known for the row, narrow
 // s; that in turn narrows its x.
-DEVICE unsigned row_targets(const LightMesh &mesh, const CellItem &item, const Candidate &candidate, float py, float pz,
+DEVICE unsigned row_targets(const LightMesh &mesh, const CellBundle &bundle, const Candidate &candidate, float py, float pz,
                             unsigned bit, int count, int x, const unsigned *seen) {
     const float4 yz = candidate.span_yz, inverse = candidate.inverse_yz;
     float least = 1.0f, most = candidate.most.x;
-    narrow(yz.x, yz.y, inverse.x, inverse.y, py - item.high.y - mesh.slack, py - item.low.y + mesh.slack, least, most);
-    narrow(yz.z, yz.w, inverse.z, inverse.w, pz - item.high.z - mesh.slack, pz - item.low.z + mesh.slack, least, most);
+    narrow(yz.x, yz.y, inverse.x, inverse.y, py - bundle.high.y - mesh.slack, py - bundle.low.y + mesh.slack, least, most);
+    narrow(yz.z, yz.w, inverse.z, inverse.w, pz - bundle.high.z - mesh.slack, pz - bundle.low.z + mesh.slack, least, most);
     // The rounding of products is far less than this.
     if (least > most * 1.000001f)
         return 0;
     const float low_x = candidate.corners[1].w, high_x = candidate.corners[2].w;
     const Span reached = {fminf(least * low_x, most * low_x), fmaxf(least * high_x, most * high_x)};
     int first, last;
-    span_in_steps(mesh, item.inverse_step, reached, item.low.x, item.high.x, mesh.anchor.x, item.cell.x, first, last);
+    span_in_steps(mesh, bundle.inverse_step, reached, bundle.low.x, bundle.high.x, mesh.anchor.x, bundle.cell.x, first, last);
     first = max(first - x, 0);
     last = min(last - x, count - 1);
     unsigned targets = 0;
@@ -43,14 +43,14 @@ DEVICE unsigned row_targets(const LightMesh &mesh, const CellItem &item, const C
     return targets;
 }
 
-// Whether a triangle may stand between a light point and a surface point of the item: whether the light point, looking through the
+// Whether a triangle may stand between a light point and a surface point of the bundle: whether the light point, looking through the
 // triangle, sees any part of the box around the origins behind it.
-DEVICE bool may_hide(const LightMesh &mesh, const CellItem &item, const Candidate &candidate, const Vec3 &target) {
+DEVICE bool may_hide(const LightMesh &mesh, const CellBundle &bundle, const Candidate &candidate, const Vec3 &target) {
     const Vec3 a = corner_of(candidate.corners[0]) - target, b = corner_of(candidate.corners[1]) - target,
                c = corner_of(candidate.corners[2]) - target;
     const Vec3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b), all = bc + ca + ab;
     const float volume = dot(a, bc), sign = volume < 0.0f ? -1.0f : 1.0f;
-    const Vec3 middle = 0.5f * (item.low + item.high) - target, half = 0.5f * (item.high - item.low) + splat(mesh.slack);
+    const Vec3 middle = 0.5f * (bundle.low + bundle.high) - target, half = 0.5f * (bundle.high - bundle.low) + splat(mesh.slack);
     // The largest products of three lengths that are rounded below, and in the test itself, which starts at the other end.
     const float reach = mesh.radius + mesh.slack, size = max_element(max(max(abs(a), abs(b)), abs(c))) + reach;
     const float rounding = 128.0f * UNIT_ROUNDOFF * size * size * reach;
@@ -61,7 +61,7 @@ DEVICE bool may_hide(const LightMesh &mesh, const CellItem &item, const Candidat
 }
 
 // Keeps the targets that some lane still sees and that their candidate may hide, and marks the end.
-DEVICE void filter_targets(const LightMesh &mesh, const CellItem &item, const CellMemory &memory, unsigned count) {
+DEVICE void filter_targets(const LightMesh &mesh, const CellBundle &bundle, const CellMemory &memory, unsigned count) {
     const unsigned lane = lane_of_thread();
     unsigned kept = 0;
     for (unsigned first = 0; first < count; first += WARP) {
@@ -71,7 +71,7 @@ DEVICE void filter_targets(const LightMesh &mesh, const CellItem &item, const Ce
             target = memory.targets[first + lane];
             const unsigned packed = __float_as_uint(target.w);
             keep = memory.seen[packed & 0xffff] != 0 &&
-                   may_hide(mesh, item, memory.candidates[packed >> 16], Vec3{target.x, target.y, target.z});
+                   may_hide(mesh, bundle, memory.candidates[packed >> 16], Vec3{target.x, target.y, target.z});
         }
         const unsigned lanes = __ballot_sync(ALL_LANES, keep);
         // All have read before any writes.
@@ -87,7 +87,7 @@ DEVICE void filter_targets(const LightMesh &mesh, const CellItem &item, const Ce
 }
 
 // A triangle as seen from the lane's surface point.
-DEVICE Occluder occluder_of(const Candidate &candidate, const ItemLane &lane, bool &above) {
+DEVICE Occluder occluder_of(const Candidate &candidate, const BundleLane &lane, bool &above) {
     const Vec3 &origin = lane.point.origin, &normal = lane.point.normal;
     const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
                c = corner_of(candidate.corners[2]) - origin;
@@ -98,7 +98,7 @@ DEVICE Occluder occluder_of(const Candidate &candidate, const ItemLane &lane, bo
 }
 
 // Whether the lane's surface point sees the triangle edge-on.
-DEVICE bool is_edge_on(const LightMesh &mesh, const Candidate &candidate, const ItemLane &lane, const Occluder &occluder) {
+DEVICE bool is_edge_on(const LightMesh &mesh, const Candidate &candidate, const BundleLane &lane, const Occluder &occluder) {
     const Vec3 &origin = lane.point.origin;
     const Vec3 a = corner_of(candidate.corners[0]) - origin, b = corner_of(candidate.corners[1]) - origin,
                c = corner_of(candidate.corners[2]) - origin;
@@ -107,7 +107,7 @@ DEVICE bool is_edge_on(const LightMesh &mesh, const Candidate &candidate, const 
 }
 
 // Those of `lanes` whose segments along `d` a candidate stops where it is not cut out.
-DEVICE unsigned stopped_lanes(const AlphaMask &alpha_mask, const Candidate &candidate, const ItemLane &lane, Vec3 d, unsigned lanes) {
+DEVICE unsigned stopped_lanes(const AlphaMask &alpha_mask, const Candidate &candidate, const BundleLane &lane, Vec3 d, unsigned lanes) {
     const unsigned cut = __float_as_uint(candidate.most.z);
     if (cut == 0)
         return lanes;
@@ -118,7 +118,7 @@ DEVICE unsigned stopped_lanes(const AlphaMask &alpha_mask, const Candidate &cand
 
 // 3. d. Clears the light points that the candidates hide from the lanes. Targets of one candidate are consecutive, and the last is
 // followed by one of no candidate. Returns whether the lane tested a triangle.
-DEVICE bool clear_blocked(const ShortTests &args, const AlphaMask *alpha_mask, const ItemLane &lane, const CellMemory &memory) {
+DEVICE bool clear_blocked(const ShortTests &args, const AlphaMask *alpha_mask, const BundleLane &lane, const CellMemory &memory) {
     bool asked = false;
     Target target = memory.targets[0];
     for (unsigned i = 0; __float_as_uint(target.w) != NO_TARGET;) {
@@ -153,7 +153,7 @@ DEVICE bool clear_blocked(const ShortTests &args, const AlphaMask *alpha_mask, c
 
 // 3. c. Lanes process the rows of light points that the candidates reach, and list the points that may be hidden; the warp tests
 // them. `rows` is the number of rows of the lane's candidate.
-DEVICE bool test_candidates(const ShortTests &args, const AlphaMask *alpha_mask, const CellItem &item, const ItemLane &own,
+DEVICE bool test_candidates(const ShortTests &args, const AlphaMask *alpha_mask, const CellBundle &bundle, const BundleLane &own,
                             const CellMemory &memory, unsigned rows) {
     const LightMesh &mesh = args.mesh;
     const unsigned lane = lane_of_thread();
@@ -173,11 +173,11 @@ DEVICE bool test_candidates(const ShortTests &args, const AlphaMask *alpha_mask,
             // Fewer than 1024 rows: the quotient of floats, moved away from integers, gives the exact result.
             const unsigned plane = __float2int_rd(((float)row + 0.5f) * candidate.most.y);
             const int y = box_bound(box, 2) + (int)(row - plane * lines), z = box_bound(box, 4) + (int)plane;
-            py = lattice_coordinate(mesh.anchor.y, mesh.step, item.cell.y + y);
-            pz = lattice_coordinate(mesh.anchor.z, mesh.step, item.cell.z + z);
+            py = lattice_coordinate(mesh.anchor.y, mesh.step, bundle.cell.y + y);
+            pz = lattice_coordinate(mesh.anchor.z, mesh.step, bundle.cell.z + z);
             int count;
             template_row(mesh, row_of(mesh, y, z), bit, count, x);
-            targets = row_targets(mesh, item, candidate, py, pz, bit, count, x, memory.seen);
+            targets = row_targets(mesh, bundle, candidate, py, pz, bit, count, x, memory.seen);
         }
         // As many lanes as there is room for list their points; then these are tested.
         while (__any_sync(ALL_LANES, targets != 0)) {
@@ -188,12 +188,12 @@ DEVICE bool test_candidates(const ShortTests &args, const AlphaMask *alpha_mask,
                 for (unsigned place = until - amount; targets != 0; place++) {
                     const int i = __ffs(targets) - 1;
                     targets &= targets - 1;
-                    const float px = lattice_coordinate(mesh.anchor.x, mesh.step, item.cell.x + x + i);
+                    const float px = lattice_coordinate(mesh.anchor.x, mesh.step, bundle.cell.x + x + i);
                     memory.targets[place] = Target{px, py, pz, __uint_as_float(owner << 16 | (bit + i))};
                 }
             }
             __syncwarp();
-            filter_targets(mesh, item, memory, listed);
+            filter_targets(mesh, bundle, memory, listed);
             asked |= clear_blocked(args, alpha_mask, own, memory);
         }
     }

@@ -112,8 +112,8 @@ proptest! {
     fn coherent_rays_agree(scene in prop::sample::select(&scenes::ALL), cut: bool, seed: u64) {
         let random = &mut Random(seed);
         let held = alpha_tested(scene.triangles(random), cut, random);
-        // Bundles one after another in one batch: packets begin and end anywhere.
-        let hits = rays_agree(&held, |targets| (0..40).flat_map(|_| targets.bundle(random)).collect())?;
+        // Beams one after another in one batch: packets begin and end anywhere.
+        let hits = rays_agree(&held, |targets| (0..40).flat_map(|_| targets.beam(random)).collect())?;
         prop_assert!(matches!(scene, Scene::Empty | Scene::One | Scene::Flat) || hits > 40, "{} rays hit", hits);
     }
 
@@ -125,7 +125,7 @@ proptest! {
         let targets = Targets { triangles: &triangles, grids: &grids };
         let bvh = Bvh::new(&triangles).with_alpha_mask(&alpha_mask);
         for _ in 0..20 {
-            let rays = targets.bundle(random);
+            let rays = targets.beam(random);
             let (hits, shadows) = (closest(&bvh, &rays), occluded(&bvh, &rays));
             for (index, ray) in rays.iter().enumerate() {
                 let alone = closest(&bvh, &[*ray])[0];
@@ -147,7 +147,7 @@ proptest! {
         let mut beams = Beams::new(&bvh, &held, &alpha_mask, &bounds);
         for _ in 0..20 {
             let unit = |ray: Ray| Ray { direction: ray.direction.try_normalize().unwrap_or(ray.direction), ..ray };
-            let rays: Vec<Ray> = targets.bundle(random).into_iter().map(unit).collect();
+            let rays: Vec<Ray> = targets.beam(random).into_iter().map(unit).collect();
             let expected = closest(&bvh, &rays);
             // Nothing, about as far as they go, or exactly so far; wrong guesses cost time alone.
             let depths: Vec<f32> = expected.iter().map(|hit| hit.t).filter(|t| t.is_finite()).collect();

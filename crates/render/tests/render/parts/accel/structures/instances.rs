@@ -87,7 +87,7 @@ proptest! {
         let grids = grids(&copies);
         let targets = Targets { triangles: &copies, grids: &grids };
         let mut rays: Vec<_> = (0..200).map(|_| targets.ray(random)).collect();
-        rays.extend((0..20).flat_map(|_| targets.bundle(random)).collect::<Vec<_>>());
+        rays.extend((0..20).flat_map(|_| targets.beam(random)).collect::<Vec<_>>());
         let oracle = BruteForce::new(&copies).with_alpha_mask(&alpha_mask);
         let (hits, shadows) = (closest(&oracle, &rays), occluded(&oracle, &rays));
         for bvh in [bvh.clone().at_level(fearless_simd::Level::baseline()), bvh] {

@@ -31,7 +31,7 @@ impl Targets<'_> {
     }
 
     /// Neighbouring rays of one of many kinds, enough to fill none, one or several packets; a few of them are spoiled or cut short.
-    pub(super) fn bundle(&self, random: &mut Random) -> Vec<Ray> {
+    pub(super) fn beam(&self, random: &mut Random) -> Vec<Ray> {
         let count = random.pick(&[1, 3, 4, 7, 8, 9, 31, 32, 33, 64, 77]);
         let (origin, target) = (self.around(random), self.point(random));
         let (right, down) = (random.signed() * 0.05, random.signed() * 0.05);

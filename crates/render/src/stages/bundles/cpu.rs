@@ -1,4 +1,4 @@
-//! Items on the CPU, a task per tile.
+//! Bundles on the CPU, a task per tile.
 
 use glam::{IVec3, Vec3};
 use lightmesh_layout::constants::{
@@ -6,26 +6,26 @@ use lightmesh_layout::constants::{
 };
 use rayon::prelude::*;
 
-use crate::data::items::Items;
+use crate::data::bundles::Bundles;
 use crate::data::wave::HostWave;
 
-pub(crate) fn items(wave: &HostWave) -> Items {
+pub(crate) fn bundles(wave: &HostWave) -> Bundles {
     let rays = wave.hits.len();
-    let tiles: Vec<Items> = (0..rays.div_ceil(TILE as usize))
+    let tiles: Vec<Bundles> = (0..rays.div_ceil(TILE as usize))
         .into_par_iter()
         .map(|tile| {
             let first = tile * TILE as usize;
             let count = (rays - first).min(TILE as usize);
-            wave.context.piece(count, || items_of_tile(wave, first, count))
+            wave.context.piece(count, || bundles_of_tile(wave, first, count))
         })
         .collect();
-    let mut items = Items::default();
-    tiles.iter().for_each(|tile| items.append(tile));
-    items
+    let mut bundles = Bundles::default();
+    tiles.iter().for_each(|tile| bundles.append(tile));
+    bundles
 }
 
-/// The items of `count` rays, at most [`TILE`], from number `first` on.
-fn items_of_tile(wave: &HostWave, first: usize, count: usize) -> Items {
+/// The bundles of `count` rays, at most [`TILE`], from number `first` on.
+fn bundles_of_tile(wave: &HostWave, first: usize, count: usize) -> Bundles {
     // 1. The cell of each surface point, and its place there.
     let seen = (0..count).filter(|&place| wave.sees(first + place));
     let mut words: Vec<u32> = seen.map(|place| sort_word(wave, first + place, place as u32)).collect();
@@ -33,18 +33,18 @@ fn items_of_tile(wave: &HostWave, first: usize, count: usize) -> Items {
     // 2. Sort by cell, within a cell along the curve.
     words.sort_unstable();
 
-    // 3. Every cell begins an item, and so does every 32nd point after its first.
-    let mut items = Items::default();
+    // 3. Every cell begins a bundle, and so does every 32nd point after its first.
+    let mut bundles = Bundles::default();
     for cell in words.chunk_by(|a, b| a >> 16 == b >> 16) {
-        for item in cell.chunks(WARP as usize) {
-            items.push(item.iter().map(|word| first as u32 + word % TILE));
+        for bundle in cell.chunks(WARP as usize) {
+            bundles.push(bundle.iter().map(|word| first as u32 + word % TILE));
         }
     }
-    items
+    bundles
 }
 
 /// 16 bits of a hash of a surface point's cell, 6 bits of its place in the cell, 10 bits of its place in the tile. Cells with equal hashes
-/// share items.
+/// share bundles.
 fn sort_word(wave: &HostWave, ray: usize, place: u32) -> u32 {
     let point = wave.surface_point(ray).position;
     let width = CELL_PIXELS * wave.rays.width_at(point);

@@ -1,7 +1,7 @@
-// Items on a CUDA device: twin of cpu.rs, a block for each tile.
+// Bundles on a CUDA device: twin of cpu.rs, a block for each tile.
 //
-// 1. to 3. `group_items`: the items of each tile.
-// 4. `gather_items`: those of all tiles in one list.
+// 1. to 3. `group_bundles`: the bundles of each tile.
+// 4. `gather_bundles`: those of all tiles in one list.
 #include "cuda/prelude.cuh"
 
 #include "data/rays.cuh"
@@ -24,7 +24,7 @@ DEVICE unsigned long long joined(unsigned long long key, unsigned part) {
 DEVICE unsigned spread(unsigned quarter) { return (quarter & 1) | (quarter & 2) << 2; }
 
 // 16 bits of a hash of a surface point's cell, 6 bits of its place in the cell, 10 bits of its thread.
-DEVICE unsigned sort_word(const GroupItems &args, const SurfacePoint &point, unsigned thread) {
+DEVICE unsigned sort_word(const GroupBundles &args, const SurfacePoint &point, unsigned thread) {
     const float width = CELL_PIXELS * (args.spacing[0] + args.spacing[1] * length(point.position - args.rays.view.origin));
     // A power of two, so that neighbours at different distances have the same cells.
     const float step = __uint_as_float((__float_as_uint(width) & F32_INFINITY_BITS) + F32_EXPONENT_STEP);
@@ -65,7 +65,7 @@ DEVICE void box_tile(bool has, const Vec3 &origin, const Vec3 &lifted, Corner &c
     }
 }
 
-KERNEL(group_items, GroupItems, TILE, 2) {
+KERNEL(group_bundles, GroupBundles, TILE, 2) {
     SHARED(unsigned, rays, [TILE]);
     SHARED(unsigned, words, [TILE]);
     SHARED(unsigned, warps, [TILE / WARP]);
@@ -95,22 +95,22 @@ KERNEL(group_items, GroupItems, TILE, 2) {
     __syncthreads();
     const bool first_of_cell = is_point && (thread == 0 || words[thread - 1] >> 16 != word >> 16);
 
-    // 3. Every cell begins an item, and so does every 32nd point after its first.
-    const TileItem item = item_of_thread(is_point, first_of_cell, words, warps);
+    // 3. Every cell begins a bundle, and so does every 32nd point after its first.
+    const TileBundle bundle = bundle_of_thread(is_point, first_of_cell, words, warps);
     const unsigned long long place = tile * TILE;
     if (is_point)
         args.members[place + thread] = rays[word & (TILE - 1)];
-    if (item.begins)
-        args.ends[place + item.number] = (unsigned short)item.end;
+    if (bundle.begins)
+        args.ends[place + bundle.number] = (unsigned short)bundle.end;
     if (thread == 0)
-        args.counts[tile] = item.count;
+        args.counts[tile] = bundle.count;
 }
 
-KERNEL(gather_items, GroupItems, TILE, 1) {
+KERNEL(gather_bundles, GroupBundles, TILE, 1) {
     const unsigned first = args.counts[blockIdx.x], count = args.counts[blockIdx.x + 1] - first;
     if (threadIdx.x >= count)
         return;
     const unsigned long long place = (unsigned long long)blockIdx.x * TILE;
     const unsigned start = threadIdx.x == 0 ? 0 : args.ends[place + threadIdx.x - 1], end = args.ends[place + threadIdx.x];
-    args.items[first + threadIdx.x] = (place + start) << 6 | (end - start);
+    args.bundles[first + threadIdx.x] = (place + start) << 6 | (end - start);
 }

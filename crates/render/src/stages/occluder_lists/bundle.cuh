@@ -1,4 +1,4 @@
-// The shadows of an item, one surface point per lane: twin of cpu.rs, with the same steps.
+// The shadows of a bundle, one surface point per lane: twin of cpu.rs, with the same steps.
 #pragma once
 
 #include "accel/search.cuh"
@@ -74,7 +74,7 @@ DEVICE ListMemory list_memory(unsigned *shared, unsigned search_words) {
 }
 
 // A warp's surface points and their view of a light.
-struct ItemProjection {
+struct BundleProjection {
     SurfacePoint point;
     Sight projected;
     Shape shape;
@@ -91,23 +91,23 @@ struct ItemProjection {
     unsigned asked;
 };
 
-// The view of a light is computed when it is needed: most items find nothing between them and a light. This and what follows are calls,
-// so that the instructions that all items need fit into the cache.
+// The view of a light is computed when it is needed: most bundles find nothing between them and a light. This and what follows are calls,
+// so that the instructions that all bundles need fit into the cache.
 COLD Sight view_of(const Shadows &args, unsigned light, Shape shape, unsigned lines, SurfacePoint point, unsigned long long key) {
     return projected_light_of(args.scene, args.sampling, light, shape, lines, point, key);
 }
 
-DEVICE void look(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set) {
-    item.projected = view_of(args, light, item.shape, set.lines, item.point, item.key);
-    item.looked = true;
+DEVICE void look(const Shadows &args, BundleProjection &bundle, unsigned light, const SampleRows &set) {
+    bundle.projected = view_of(args, light, bundle.shape, set.lines, bundle.point, bundle.key);
+    bundle.looked = true;
 }
 
 // The view and the rows of its samples, unless they are known.
-DEVICE void look_at_rows(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set, const RowTable &table) {
-    if (item.looked)
+DEVICE void look_at_rows(const Shadows &args, BundleProjection &bundle, unsigned light, const SampleRows &set, const RowTable &table) {
+    if (bundle.looked)
         return;
-    look(args, item, light, set);
-    fill_row_offsets(item.projected, set, table);
+    look(args, bundle, light, set);
+    fill_row_offsets(bundle.projected, set, table);
 }
 
 // The samples in front of a surface that the emitter may reach below.
@@ -119,39 +119,39 @@ COLD Seen<WORDS> partly_unhidden(bool has, SurfacePoint point, Sight projected, 
 
 // 1. The samples in front of the surface. Where all or none of the emitter is in front of all surfaces, that needs no view of it.
 template <unsigned WORDS>
-DEVICE Seen<WORDS> unhidden(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set,
+DEVICE Seen<WORDS> unhidden(const Shadows &args, BundleProjection &bundle, unsigned light, const SampleRows &set,
                             const RowTable &table) {
     const Light &emitter = args.scene.lights[light];
     float radius;
-    const Vec3 way = way_to(args.scene, emitter, item.point.origin, radius);
-    const float height = dot(item.point.normal, way);
+    const Vec3 way = way_to(args.scene, emitter, bundle.point.origin, radius);
+    const float height = dot(bundle.point.normal, way);
     const float room = ENLARGEMENT * radius + (ENLARGEMENT - 1.0f) * element_sum(abs(way));
     const bool above = height > room, below = height < -room;
     Seen<WORDS> seen = {};
-    if (!__any_sync(ALL_LANES, item.has && !below))
+    if (!__any_sync(ALL_LANES, bundle.has && !below))
         return seen;
-    if (item.shape != SHAPE_DISC || __any_sync(ALL_LANES, item.has && !above && !below)) {
-        look(args, item, light, set);
-        return partly_unhidden<WORDS>(item.has, item.point, item.projected, item.shape, set, table);
+    if (bundle.shape != SHAPE_DISC || __any_sync(ALL_LANES, bundle.has && !above && !below)) {
+        look(args, bundle, light, set);
+        return partly_unhidden<WORDS>(bundle.has, bundle.point, bundle.projected, bundle.shape, set, table);
     }
     UNROLL
     for (unsigned word = 0; word < WORDS; ++word)
-        seen.bits[word] = item.has && above ? set.full[word] : 0;
+        seen.bits[word] = bundle.has && above ? set.full[word] : 0;
     return seen;
 }
 
 // 4. What candidates hide, until nothing is left. Returns whether anything is. `cuts` are the numbers of their opacities, 0 for those that are
 // opaque, with an alpha mask.
 template <unsigned WORDS>
-DEVICE bool test_candidates(const ItemProjection &item, const RowTable &table, const float4 *candidates, const AlphaMask *alpha_mask,
+DEVICE bool test_candidates(const BundleProjection &bundle, const RowTable &table, const float4 *candidates, const AlphaMask *alpha_mask,
                             const unsigned *cuts, unsigned count, Seen<WORDS> &seen) {
     ROLLED
     for (unsigned k = 0; k < count; ++k) {
         const Hiding triangle = {candidates + OCCLUDER_PARTS * k, alpha_mask, cuts + k};
-        if (item.shape == SHAPE_POINT)
-            seen.bits[0] &= hides_center(item.point, item.projected, triangle) ? 0 : 1;
+        if (bundle.shape == SHAPE_POINT)
+            seen.bits[0] &= hides_center(bundle.point, bundle.projected, triangle) ? 0 : 1;
         else
-            hide<WORDS>(item.point, item.projected, triangle, table, any(seen), seen.bits);
+            hide<WORDS>(bundle.point, bundle.projected, triangle, table, any(seen), seen.bits);
         if (!__any_sync(ALL_LANES, any(seen)))
             return false;
     }
@@ -161,7 +161,7 @@ DEVICE bool test_candidates(const ItemProjection &item, const RowTable &table, c
 // 3. Chooses among up to 32 of the triangles found, one per lane, and tests them. Returns whether anything is still seen. `tested` is the number of
 // candidates.
 template <unsigned WORDS, class Structure>
-DEVICE bool test_found(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set, const RowTable &table,
+DEVICE bool test_found(const Shadows &args, BundleProjection &bundle, unsigned light, const SampleRows &set, const RowTable &table,
                        const Region<ShaftShape> &region, const Structure &structure, const ListMemory &memory, unsigned first,
                        unsigned count, unsigned &tested, Seen<WORDS> &seen) {
     const unsigned lane = lane_of_thread();
@@ -179,7 +179,7 @@ DEVICE bool test_found(const Shadows &args, ItemProjection &item, unsigned light
     tested = __popc(dark | kept);
     if (tested == 0)
         return true;
-    look_at_rows(args, item, light, set, table);
+    look_at_rows(args, bundle, light, set, table);
     __syncwarp();
     // The numbers of opacities take the places of the triangles, which have been read.
     const AlphaMask *alpha_mask = alpha_mask_of(structure);
@@ -198,7 +198,7 @@ DEVICE bool test_found(const Shadows &args, ItemProjection &item, unsigned light
             memory.found[first + place] = cut;
     }
     __syncwarp();
-    return test_candidates(item, table, memory.candidates, alpha_mask, memory.found + first, tested, seen);
+    return test_candidates(bundle, table, memory.candidates, alpha_mask, memory.found + first, tested, seen);
 }
 
 // 5. Whether rays to the samples still seen cost less than going on, if candidates go on hiding samples as those have that `spent` so much. The
@@ -226,38 +226,38 @@ template <>
 constexpr bool HAS_RAYS<InstancedBvh> = true;
 
 // 2. The box around the surface points that are `alive`, and their tangent planes.
-DEVICE void look_around(const ItemProjection &item, bool alive, const ListMemory &memory) {
+DEVICE void look_around(const BundleProjection &bundle, bool alive, const ListMemory &memory) {
     const unsigned lanes = __ballot_sync(ALL_LANES, alive);
     if (memory.around->lanes == lanes)
         return;
-    const Vec3 &origin = item.point.origin;
+    const Vec3 &origin = bundle.point.origin;
     const Bounds origins = {
         Vec3{warp_min(alive ? origin.x : F32_MAX), warp_min(alive ? origin.y : F32_MAX), warp_min(alive ? origin.z : F32_MAX)},
         Vec3{warp_max(alive ? origin.x : -F32_MAX), warp_max(alive ? origin.y : -F32_MAX), warp_max(alive ? origin.z : -F32_MAX)}};
-    const TangentPlanes planes = tangent_planes(origins.low, alive, origin, item.point.normal, memory.planes);
+    const TangentPlanes planes = tangent_planes(origins.low, alive, origin, bundle.point.normal, memory.planes);
     if (lane_of_thread() == 0)
         *memory.around = Around{origins, planes.count, lanes};
     __syncwarp();
 }
 
-// Where the searches of a tile's items for what hides a light start: their number, then these.
+// Where the searches of a tile's bundles for what hides a light start: their number, then these.
 DEVICE unsigned *starts_of(const Shadows &args, unsigned long long tile, unsigned light) {
     return args.starts + (tile * (args.end_light - args.first_light) + light - args.first_light) * (MAX_SEARCH_ROOTS + 1);
 }
 
-// The samples of a light that each lane sees; `tile` is that of the item, and `above` becomes the number of those in front of the surface.
+// The samples of a light that each lane sees; `tile` is that of the bundle, and `above` becomes the number of those in front of the surface.
 template <unsigned WORDS, class Structure>
-DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure, ItemProjection &item, unsigned tile,
+DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure, BundleProjection &bundle, unsigned tile,
                                  unsigned light,
                               const SampleRows &set, const ListMemory &memory, unsigned &above) {
     // 1. The samples in front of the surface.
-    const RowTable table = row_table(memory.tables, item.shape, memory.offsets);
-    Seen<WORDS> seen = unhidden<WORDS>(args, item, light, set, table);
+    const RowTable table = row_table(memory.tables, bundle.shape, memory.offsets);
+    Seen<WORDS> seen = unhidden<WORDS>(args, bundle, light, set, table);
     const bool alive = any(seen);
     above = number(seen);
     if (!__any_sync(ALL_LANES, alive))
         return seen;
-    item.asked += above;
+    bundle.asked += above;
 
     // 2. Search.
     const unsigned *starts = starts_of(args, tile, light);
@@ -269,9 +269,9 @@ DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure
         for (unsigned start = lane_of_thread(); start < start_count; start += WARP)
             memory.starts[start] = __ldg(starts + 1 + start);
     const Light &emitter = args.scene.lights[light];
-    look_around(item, alive, memory);
+    look_around(bundle, alive, memory);
     const Bounds origins = memory.around->origins;
-    const Bounds bounds = emitter_bounds(args.scene, emitter, item.shape, origins);
+    const Bounds bounds = emitter_bounds(args.scene, emitter, bundle.shape, origins);
     const TangentPlanes planes = {memory.around->planes, origins.low, memory.planes};
     const auto region = region_above(shadow_region(origins, bounds, memory.faces), planes, 0.0f);
     const bool ball = emitter.kind == Light::POINT || emitter.kind == Light::SPHERE;
@@ -291,19 +291,19 @@ DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure
         found -= count;
         // 3, 4. Candidates, and what they hide.
         unsigned tested;
-        if (!test_found(args, item, light, set, table, region, structure, memory, found, count, tested, seen))
+        if (!test_found(args, bundle, light, set, table, region, structure, memory, found, count, tested, seen))
             return Seen<WORDS>{};
         __syncwarp();
         if constexpr (HAS_RAYS<Structure>) {
             // 5. Rays instead of the rest.
             spent += CHOICE_COST + tested * (CANDIDATE_COST + ROW_COST * set.rows);
-            if (spent < check || item.shape == SHAPE_POINT)
+            if (spent < check || bundle.shape == SHAPE_POINT)
                 continue;
             check = 2 * spent;
             if (!rays_are_cheaper(spent, above, seen))
                 continue;
-            look_at_rows(args, item, light, set, table);
-            return rays_instead<WORDS>(structure, emitter.scale, item.point, item.projected, table, seen);
+            look_at_rows(args, bundle, light, set, table);
+            return rays_instead<WORDS>(structure, emitter.scale, bundle.point, bundle.projected, table, seen);
         }
     }
     return seen;
@@ -311,34 +311,34 @@ DEVICE Seen<WORDS> seen_of_light(const Shadows &args, const Structure &structure
 
 // 6. What samples count near a light: adds a lane's to its share.
 template <unsigned WORDS>
-DEVICE void add_share(const Shadows &args, ItemProjection &item, unsigned light, const SampleRows &set, const ListMemory &memory,
+DEVICE void add_share(const Shadows &args, BundleProjection &bundle, unsigned light, const SampleRows &set, const ListMemory &memory,
                       const Seen<WORDS> &seen, unsigned above) {
     const Light &emitter = args.scene.lights[light];
-    const float near = item.has ? nearness_of(args, item.shape, emitter, item.point) : 0.0f;
+    const float near = bundle.has ? nearness_of(args, bundle.shape, emitter, bundle.point) : 0.0f;
     const unsigned left = number(seen);
     const bool weighs = near > 0.0f && !is_plain(args, above, left);
-    const RowTable table = row_table(memory.tables, item.shape, memory.offsets);
+    const RowTable table = row_table(memory.tables, bundle.shape, memory.offsets);
     if (__any_sync(ALL_LANES, weighs))
-        look_at_rows(args, item, light, set, table);
+        look_at_rows(args, bundle, light, set, table);
     WeightSums sums = {0.0f, 0.0f};
     if (weighs)
-        sums = weights_of<WORDS>(&emitter, item.point.normal, item.projected, &set, table, seen);
+        sums = weights_of<WORDS>(&emitter, bundle.point.normal, bundle.projected, &set, table, seen);
     if (near > 0.0f)
-        add_weighed(args, light, item.ray, near, Weighed{above, left, sums.all, sums.lit});
-    else if (item.has)
-        add_seen(args, item.shape, light, item.ray, left);
+        add_weighed(args, light, bundle.ray, near, Weighed{above, left, sums.all, sums.lit});
+    else if (bundle.has)
+        add_seen(args, bundle.shape, light, bundle.ray, left);
 }
 
 // Places the surface points where a light is looked for.
-DEVICE void place(const Shadows &args, ItemProjection &item, unsigned light, const ListMemory &memory) {
-    if (!item.curved)
+DEVICE void place(const Shadows &args, BundleProjection &bundle, unsigned light, const ListMemory &memory) {
+    if (!bundle.curved)
         return;
-    const bool was_placed = item.placed;
+    const bool was_placed = bundle.placed;
     if (was_placed)
-        item.point = flat_point_of(args.scene, args.rays, args.hits, item.ray);
-    item.placed = __any_sync(ALL_LANES, item.has && is_low(args.scene, args.scene.lights[light], item.point, item.bend));
-    if (item.placed)
-        item.point = curved_point_of(args.scene, args.rays, args.hits, item.ray, args.scene.lights[light]);
+        bundle.point = flat_point_of(args.scene, args.rays, args.hits, bundle.ray);
+    bundle.placed = __any_sync(ALL_LANES, bundle.has && is_low(args.scene, args.scene.lights[light], bundle.point, bundle.bend));
+    if (bundle.placed)
+        bundle.point = curved_point_of(args.scene, args.rays, args.hits, bundle.ray, args.scene.lights[light]);
     else if (!was_placed)
         return;
     if (lane_of_thread() == 0)
@@ -346,42 +346,42 @@ DEVICE void place(const Shadows &args, ItemProjection &item, unsigned light, con
     __syncwarp();
 }
 
-// The shadows of an item. Returns the samples of all lights in front of the lane's surface.
+// The shadows of a bundle. Returns the samples of all lights in front of the lane's surface.
 template <unsigned WORDS, class Structure>
-DEVICE unsigned shadows_of_item(const Shadows &args, const Structure &structure, const ListMemory &memory, unsigned long long entry) {
+DEVICE unsigned shadows_of_bundle(const Shadows &args, const Structure &structure, const ListMemory &memory, unsigned long long entry) {
     const unsigned lane = lane_of_thread(), count = (unsigned)entry & 63;
     const unsigned long long slot = entry >> 6;
-    ItemProjection item;
-    item.has = lane < count;
-    item.ray = args.members[slot + (item.has ? lane : 0)];
-    item.point = surface_point_of(args.scene, args.rays, args.hits, item.ray);
-    item.key = ray_key(args.rays, item.ray);
-    item.bend = args.scene.normals != nullptr ? bend_of(args.scene, args.rays, args.hits, item.ray) : FLAT;
-    item.curved = __any_sync(ALL_LANES, item.bend != FLAT);
-    item.placed = false;
-    item.asked = 0;
+    BundleProjection bundle;
+    bundle.has = lane < count;
+    bundle.ray = args.members[slot + (bundle.has ? lane : 0)];
+    bundle.point = surface_point_of(args.scene, args.rays, args.hits, bundle.ray);
+    bundle.key = ray_key(args.rays, bundle.ray);
+    bundle.bend = args.scene.normals != nullptr ? bend_of(args.scene, args.rays, args.hits, bundle.ray) : FLAT;
+    bundle.curved = __any_sync(ALL_LANES, bundle.bend != FLAT);
+    bundle.placed = false;
+    bundle.asked = 0;
     if (lane == 0)
         memory.around->lanes = 0;
     __syncwarp();
     ROLLED
     for (unsigned light = args.first_light; light < args.end_light; ++light) {
-        item.shape = shape_of(args.sampling, args.scene.lights[light]);
-        item.looked = false;
-        const SampleRows &set = args.sets[item.shape == SHAPE_RECTANGLE ? SHAPE_RECTANGLE : SHAPE_DISC];
-        if (item.shape == SHAPE_POINT && args.set != 0)
+        bundle.shape = shape_of(args.sampling, args.scene.lights[light]);
+        bundle.looked = false;
+        const SampleRows &set = args.sets[bundle.shape == SHAPE_RECTANGLE ? SHAPE_RECTANGLE : SHAPE_DISC];
+        if (bundle.shape == SHAPE_POINT && args.set != 0)
             continue;
-        place(args, item, light, memory);
+        place(args, bundle, light, memory);
         unsigned above;
-        const Seen<WORDS> seen = seen_of_light<WORDS>(args, structure, item, (unsigned)(slot / TILE), light, set, memory, above);
-        add_share<WORDS>(args, item, light, set, memory, seen, above);
+        const Seen<WORDS> seen = seen_of_light<WORDS>(args, structure, bundle, (unsigned)(slot / TILE), light, set, memory, above);
+        add_share<WORDS>(args, bundle, light, set, memory, seen, above);
         __syncwarp();
     }
-    return item.asked;
+    return bundle.asked;
 }
 
-// Takes items until none is left.
+// Takes bundles until none is left.
 template <unsigned WORDS, class Structure>
-DEVICE void shadows_of_items(const Shadows &args, const Structure &structure) {
+DEVICE void shadows_of_bundles(const Shadows &args, const Structure &structure) {
     DYNAMIC_SHARED(unsigned, shared);
     const ListMemory memory = list_memory(shared, search_words(structure));
     fill_row_table(args.sets[SHAPE_DISC], memory.tables);
@@ -395,13 +395,13 @@ DEVICE void shadows_of_items(const Shadows &args, const Structure &structure) {
         if (taken >= args.count)
             break;
         // What is far down in an image often takes longest.
-        asked += shadows_of_item<WORDS>(args, structure, memory, args.items[args.first + (args.count - 1 - taken)]);
+        asked += shadows_of_bundle<WORDS>(args, structure, memory, args.bundles[args.first + (args.count - 1 - taken)]);
         __syncwarp();
     }
     count(tally_shard(args.tally).shadow_rays, asked);
 }
 
-// Where the searches of the items of a tile start.
+// Where the searches of the bundles of a tile start.
 template <class Structure>
 DEVICE void starts_of_tile(const Shadows &args, const Structure &structure) {
     SHARED(ShaftFaces, faces, );

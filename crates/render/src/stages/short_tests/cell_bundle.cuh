@@ -1,12 +1,12 @@
-// An item as the short tests see it: data that are the same for the whole warp.
+// A bundle as the short tests see it: data that are the same for the whole warp.
 #pragma once
 
 #include "accel/region.cuh"
 #include "light_mesh/bricks.cuh"
-#include "stages/cells/item.cuh"
+#include "stages/cells/bundle.cuh"
 
 // Data that are the same for the whole warp.
-struct CellItem {
+struct CellBundle {
     IVec3 cell;
     // The box around all origins.
     Vec3 low, high;
@@ -16,9 +16,9 @@ struct CellItem {
     TangentPlanes planes;
 };
 
-DEVICE CellItem cell_item(const LightMesh &mesh, const Item &item, const ItemLane &lane, PlanesMemory *planes) {
-    CellItem result;
-    result.cell = point_of(item.cell);
+DEVICE CellBundle cell_bundle(const LightMesh &mesh, const Bundle &bundle, const BundleLane &lane, PlanesMemory *planes) {
+    CellBundle result;
+    result.cell = point_of(bundle.cell);
     const float far = 3.4e38f;
     const Vec3 &origin = lane.point.origin, &normal = lane.point.normal;
     result.low = Vec3{warp_min(lane.alive ? origin.x : far), warp_min(lane.alive ? origin.y : far),
