@@ -160,7 +160,7 @@ impl FrameWriter {
         }
         self.manifest.finished(*number, files)?;
         self.finished += 1;
-        self.tell((*number, when), frame.stats.seconds.render, files, context);
+        self.report((*number, when), frame.stats.seconds.render, files, context);
         Ok(())
     }
 
@@ -193,7 +193,7 @@ impl FrameWriter {
         if self.manifest.is_kept() { "resume" } else { "skip_existing" }
     }
 
-    fn tell(&self, (number, when): (u32, &str), seconds: f64, files: &PictureFiles, Context { host, .. }: Context) {
+    fn report(&self, (number, when): (u32, &str), seconds: f64, files: &PictureFiles, Context { host, .. }: Context) {
         let (count, kept, index) = (self.range.numbers.len(), self.range.skipped, self.finished);
         if !self.is_movie() {
             let (finished, all, goes_on) = (index + kept, count + kept, host.words().on(self.goes_on()));

@@ -13,7 +13,7 @@ const DAY: u32 = 24 * 60;
 /// Minutes between moments if nothing says so.
 const USUAL_STEP: u32 = 15;
 
-/// Hours of a day at a place, in steps. The clock differs from universal time by the same offset all day: nothing is known of summer time.
+/// Hours of a day at a place, in steps. The clock differs from universal time by the same offset all day; daylight saving is not modelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunSpec {
     /// Degrees north.

@@ -51,7 +51,7 @@ impl Lights {
         Lights { list, ..self }
     }
 
-    /// The same, to which none are added.
+    /// The same, without any default lights added.
     pub fn as_chosen(self) -> Lights {
         Lights { chosen: true, ..self }
     }
