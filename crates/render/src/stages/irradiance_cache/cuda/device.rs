@@ -25,12 +25,12 @@ impl<R: Runtime> Device<'_, R> {
 
     /// Launches a kernel with a thread for each of `count` units.
     pub(super) fn threads<A: Pod>(&self, name: &'static str, count: usize, arguments: &A) -> Result<(), RenderError> {
-        self.launch(Kernel { module: "gathered", name }, count.div_ceil(BLOCK as usize), arguments)
+        self.launch(Kernel { module: "irradiance_cache", name }, count.div_ceil(BLOCK as usize), arguments)
     }
 
     /// Launches a kernel with a warp for each.
     pub(super) fn warps<A: Pod>(&self, name: &'static str, count: usize, arguments: &A) -> Result<(), RenderError> {
-        self.launch(Kernel { module: "gathered", name }, count.div_ceil((BLOCK / WARP) as usize), arguments)
+        self.launch(Kernel { module: "irradiance_cache", name }, count.div_ceil((BLOCK / WARP) as usize), arguments)
     }
 
     /// Launches a kernel that asks the acceleration structure, with a thread for each.
