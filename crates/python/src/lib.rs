@@ -21,6 +21,7 @@ mod planes;
 mod prepared;
 mod process;
 mod renderer;
+mod restored;
 mod scene;
 mod settings;
 mod stored;
@@ -70,7 +71,7 @@ mod _lightmesh {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         crate::process::begin();
         // For pickles alone: it is not exported.
-        module.setattr("_restore", wrap_pyfunction!(crate::stored::_restore, module)?)?;
+        module.setattr("_restore", wrap_pyfunction!(crate::restored::_restore, module)?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -25,6 +25,21 @@ pub(crate) struct Light {
     position: DVec3,
 }
 
+/// Lights: one, or a sequence of them.
+pub(crate) struct LightList(pub(crate) Vec<Light>);
+
+impl FromPyObject<'_, '_> for LightList {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<LightList> {
+        if let Ok(one) = object.extract::<Light>() {
+            return Ok(LightList(vec![one]));
+        }
+        let many = object.extract().map_err(|_| errors::wrong_type("a Light or a sequence of them", &object))?;
+        Ok(LightList(many))
+    }
+}
+
 /// What all lights have.
 struct Common {
     intensity: Option<Color>,

@@ -7,23 +7,8 @@ use pyo3::types::{PyDict, PyString};
 use crate::camera::Camera;
 use crate::environment::Environment;
 use crate::errors;
-use crate::light::Light;
+use crate::light::{Light, LightList};
 use crate::scene::Scene;
-
-/// Lights: one, or a sequence of them.
-pub(crate) struct LightList(pub(crate) Vec<Light>);
-
-impl FromPyObject<'_, '_> for LightList {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<LightList> {
-        if let Ok(one) = object.extract::<Light>() {
-            return Ok(LightList(vec![one]));
-        }
-        let many = object.extract().map_err(|_| errors::wrong_type("a Light or a sequence of them", &object))?;
-        Ok(LightList(many))
-    }
-}
 
 /// Takes camera, lights and surroundings that are objects out of settings. What is returned gives them to a scene.
 pub(crate) fn take_objects(

@@ -17,7 +17,7 @@ use crate::convert;
 use crate::errors::{self, IntoException, OrRaise};
 use crate::film::{Film, Production, Source, SunHours};
 use crate::frame::Frame;
-use crate::objects::LightList;
+use crate::light::LightList;
 use crate::prepared::{Failure, Kept, Order, PreparedScene, Subject};
 use crate::process::{self, PerProcess};
 use crate::scene::Scene;
