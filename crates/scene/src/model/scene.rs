@@ -59,7 +59,7 @@ pub struct LightMeshDefaults {
 }
 
 /// Everything needed for rendering: geometry, lights and cameras, which change independently of each other. Cloning is cheap: the
-/// geometry is shared. Serde stores the scene as it is, in the order of bytes of the machine, but not [how it moves](Scene::animation).
+/// geometry is shared. Serde stores the scene as it is, in the order of bytes of the machine, but not [how it moves](Scene::animation()).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Scene {

@@ -19,7 +19,7 @@ pub struct SunHours {
 }
 
 impl SunHours {
-    /// Hours of the pixels, row by row from the top; 0 where there is no sun, or [no surface](SunHours::mask).
+    /// Hours of the pixels, row by row from the top; 0 where there is no sun, or [no surface](SunHours::mask()).
     pub fn hours(&self) -> &[f32] {
         &self.hours
     }
