@@ -39,12 +39,11 @@ class Job:
         """Stops the work soon."""
         self.token.cancel()
 
-    def follow(self, place: list[int] | None = None) -> Callable[[lightmesh.Progress], None]:
-        """What a renderer tells its progress. `place`: the number of parts done and of all, while the work has several."""
+    def follow(self) -> Callable[[lightmesh.Progress], None]:
+        """What a renderer tells its progress."""
 
         def called(progress: lightmesh.Progress) -> None:
-            done, parts = place or (0, 1)
-            self.share = max(self.share, (done + progress.done) / parts)
+            self.share = progress.done
 
         return called
 

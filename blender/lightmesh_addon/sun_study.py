@@ -106,12 +106,7 @@ def hours(asked: Study, job: Job) -> Hours:
 def frames(asked: Study, output: Output, job: Job) -> Day:
     """Renders the frames of the day and writes them."""
     output.path.parent.mkdir(parents=True, exist_ok=True)
-    place = [0, 1]
     film = asked.renderer().film(
-        asked.scene, output.path, progress=job.follow(place), cancel=job.token, **asked.settings, **output.settings
+        asked.scene, output.path, progress=job.follow(), cancel=job.token, **asked.settings, **output.settings
     )
-    count = place[1] = max(len(film), 1)
-    rendered = 0
-    for rendered, _ in enumerate(film, 1):
-        place[0] = min(rendered, count - 1)
-    return Day(rendered)
+    return Day(sum(1 for _ in film))

@@ -383,8 +383,8 @@ def test_frames_cancelled_stay(tmp_path: Path) -> None:
 
     def work(job: Job) -> object:
         follow = job.follow
-        # Stopped by whoever follows, when the second frame begins.
-        job.follow = lambda place: lambda progress: (follow(place)(progress), place[0] == 1 and job.cancel())
+        # Stopped by whoever follows, when the second of seven frames begins.
+        job.follow = lambda: lambda progress: (follow()(progress), progress.done > 1.001 / 7 and job.cancel())
         return sun_study.frames(asked, files, job)
 
     job = Job(work)

@@ -42,7 +42,7 @@ from typing import Literal, TypedDict, Union
 
 from numpy.typing import ArrayLike
 
-from ._lightmesh import Camera, Environment
+from ._lightmesh import Camera, Environment, Light
 
 _Path = Union[str, PathLike[str]]
 _Color = Union[float, ArrayLike]
@@ -122,6 +122,7 @@ fn annotation(field: &Field) -> String {
     match (field.name, field.shape) {
         ("camera", _) => "Camera | str".to_owned(),
         ("environment", _) => "Environment | _Path".to_owned(),
+        ("light", _) => "Light | str | Sequence[Light] | Sequence[str]".to_owned(),
         ("memory_limit", _) => "int | str".to_owned(),
         ("fps", _) => "float | str".to_owned(),
         ("dither", _) | (_, Shape::Switch) => "bool".to_owned(),

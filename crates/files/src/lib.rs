@@ -25,6 +25,7 @@
 mod check;
 mod cleanup;
 mod output;
+mod per_process;
 mod publish;
 mod read;
 mod registry;
@@ -41,6 +42,7 @@ mod tests;
 pub use check::{check_folder, check_writable};
 pub use cleanup::{Aborted, abort, publish_on_abort, record_written};
 pub use output::{Output, Ready, WriteError};
+pub use per_process::PerProcess;
 pub use publish::{PublishError, publish, publish_record};
 pub use read::{Portion, ReadError, read, read_inside, read_stream};
 pub use stream::is_standard_output;

@@ -1,14 +1,17 @@
 //! What is unfinished: every temporary file is created, renamed and removed under one lock.
 
 use std::collections::BTreeSet;
+use std::convert::Infallible;
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+use crate::per_process::PerProcess;
 
 /// Paths of temporary files.
 pub(crate) type Temporaries = BTreeSet<PathBuf>;
 
 /// The unfinished outputs of this process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Registry {
     /// All temporary files.
     pub(crate) temporaries: Temporaries,
@@ -20,11 +23,12 @@ pub(crate) struct Registry {
     pub(crate) partial: Option<PathBuf>,
 }
 
-static REGISTRY: Mutex<Registry> =
-    Mutex::new(Registry { temporaries: BTreeSet::new(), swept: BTreeSet::new(), written: None, partial: None });
+/// A child has written nothing yet, and files of its parent are not its own.
+static REGISTRY: LazyLock<PerProcess<Mutex<Registry>>> = LazyLock::new(|| PerProcess::new(Mutex::default()));
 
 pub(crate) fn registry() -> MutexGuard<'static, Registry> {
-    REGISTRY.lock().unwrap_or_else(PoisonError::into_inner)
+    let Ok(own) = REGISTRY.get_or_make(|| Ok::<_, Infallible>(Mutex::default()));
+    own.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Registry {

@@ -192,9 +192,33 @@ impl Frame {
     /// # Errors
     /// [`EncodeError::NoLayers`] if the frame has none.
     pub fn encode_layers(&self) -> Result<Vec<u8>, EncodeError> {
+        self.encode_layers_with(&SaveOptions::default())
+    }
+
+    #[cfg(feature = "exr")]
+    /// As [`Frame::encode_layers`], with all options.
+    ///
+    /// # Errors
+    /// As [`Frame::encode_layers`].
+    pub fn encode_layers_with(&self, options: &SaveOptions) -> Result<Vec<u8>, EncodeError> {
         let layers = self.layers().ok_or(EncodeError::NoLayers)?;
         let mut output = std::io::Cursor::new(Vec::new());
-        exr::write_layers(self, layers, &SaveOptions::default(), &mut output)?;
+        exr::write_layers(self, layers, options, &mut output)?;
+        Ok(output.into_inner())
+    }
+
+    #[cfg(feature = "exr")]
+    /// The bytes that [`Frame::ready_values_to`] would write.
+    ///
+    /// # Errors
+    /// [`EncodeError`] if the format cannot store the image.
+    ///
+    /// # Panics
+    /// As [`Frame::ready_values_to`].
+    pub fn encode_values(&self, channels: &[(&str, &[f32])], options: &SaveOptions) -> Result<Vec<u8>, EncodeError> {
+        assert!(channels.iter().all(|(_, values)| values.len() == self.color().len()), "a value for each pixel");
+        let mut output = std::io::Cursor::new(Vec::new());
+        exr::write_values(self, channels, options, &mut output)?;
         Ok(output.into_inner())
     }
 

@@ -1,5 +1,6 @@
 //! What is kept from image to image.
 
+use std::convert::Infallible;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -7,20 +8,23 @@ use lightmesh::MeshCache as Kept;
 use lightmesh_memory::Budget;
 use pyo3::prelude::*;
 
+use crate::argument::Given;
 use crate::errors::OrRaise;
 use crate::prepared::PreparedScene;
+use crate::process::{self, PerProcess};
 
-/// What light points see and surfaces gather, kept from image to image. Images are the same without it.
+/// What light points see and surfaces gather, kept from image to image. Images are the same without it. A process that is forked begins with
+/// an empty one.
 #[pyclass(frozen, module = "lightmesh")]
-#[derive(Default)]
 pub(crate) struct MeshCache {
-    kept: Mutex<Kept>,
+    kept: PerProcess<Mutex<Kept>>,
 }
 
 impl MeshCache {
     /// The cache, which serves one image at a time. To be asked for without the interpreter: another thread may need it to be done.
     pub(crate) fn lock(&self) -> MutexGuard<'_, Kept> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+        let Ok(kept) = self.kept.get_or_make(|| Ok::<_, Infallible>(Mutex::default()));
+        kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -28,19 +32,22 @@ impl MeshCache {
 impl MeshCache {
     #[new]
     fn new() -> MeshCache {
-        MeshCache::default()
+        MeshCache { kept: PerProcess::new(Mutex::default()) }
     }
 
-    /// Reads a file of `save`, or of `--mesh-file`. Raises `MeshFileError`.
+    /// Reads the file `path` of `save`, or of `--mesh-file`, for a `prepared` scene. Raises `MeshFileError`.
     #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf, prepared: &PreparedScene) -> PyResult<MeshCache> {
-        let kept = py.detach(|| Kept::load(&path, prepared.prepared(), Budget::default())).or_raise()?;
-        Ok(MeshCache { kept: Mutex::new(kept) })
+    fn load(py: Python<'_>, path: Given<PathBuf>, prepared: Given<Bound<'_, PreparedScene>>) -> PyResult<MeshCache> {
+        let prepared = prepared.get().prepared();
+        let kept = process::detach(py, || Kept::load(&*path, prepared, Budget::default()))?.or_raise()?;
+        Ok(MeshCache { kept: PerProcess::new(Mutex::new(kept)) })
     }
 
-    /// Writes light points and gathered light, and returns the number of light points; if nothing is kept, no file is written.
-    fn save(&self, py: Python<'_>, path: PathBuf, prepared: &PreparedScene) -> PyResult<u64> {
-        let saved = py.detach(|| self.lock().save(&path, prepared.prepared())).or_raise()?;
+    /// Writes light points and gathered light of a `prepared` scene to `path`, and returns the number of light points; if nothing is kept, no file is
+    /// written.
+    fn save(&self, py: Python<'_>, path: Given<PathBuf>, prepared: Given<Bound<'_, PreparedScene>>) -> PyResult<u64> {
+        let prepared = prepared.get().prepared();
+        let saved = process::detach(py, || self.lock().save(&*path, prepared))?.or_raise()?;
         Ok(saved.map_or(0, |saved| saved.values))
     }
 

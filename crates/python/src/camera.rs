@@ -4,18 +4,22 @@ use glam::{DVec3, Vec3};
 use lightmesh::Scene;
 use lightmesh::scene::{self, Fov, Projection};
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use crate::argument::{Given, Single};
 use crate::convert::Vector;
 use crate::errors::{self, OrRaise};
+use crate::stored::{self, Reduced};
 
 /// The vertical field of view of cameras of which nothing is said, degrees.
 const USUAL_VFOV: f32 = 45.0;
 
 /// A camera at `position` that looks at `target`, or along `direction`. `vfov` or `hfov` is the full vertical or horizontal field of view,
 /// degrees (45° vertical if none is given); `height` in their place makes it orthographic: the image is as high in scene units. `shift` moves
-/// the image, to the right and up, by shares of its height, as a shifted lens does: parallels stay parallel.
+/// the image, to the right and up, by shares of its height, as a shifted lens does: parallels stay parallel. `up` is what is up in the image, and
+/// `name` what `camera_name` calls it.
 #[pyclass(frozen, from_py_object, module = "lightmesh")]
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Camera {
     /// At the origin of its scene.
     camera: scene::Camera,
@@ -41,7 +45,7 @@ impl Camera {
     #[pyo3(
         signature = (
             position, target = None, *, direction = None, up = None, vfov = None, hfov = None, height = None,
-            shift = (0.0, 0.0), name = String::new()
+            shift = Given((Single(0.0), Single(0.0))), name = Given(String::new())
         ),
         text_signature = "(position, target=None, *, direction=None, up=(0.0, 1.0, 0.0), vfov=None, hfov=None, height=None, shift=(0.0, 0.0), \
             name='')"
@@ -52,13 +56,15 @@ impl Camera {
         target: Option<Vector>,
         direction: Option<Vector>,
         up: Option<Vector>,
-        vfov: Option<f32>,
-        hfov: Option<f32>,
-        height: Option<f32>,
-        shift: (f32, f32),
-        name: String,
+        vfov: Option<Single>,
+        hfov: Option<Single>,
+        height: Option<Single>,
+        shift: Given<(Single, Single)>,
+        name: Given<String>,
     ) -> PyResult<Camera> {
         let position = position.0;
+        let [vfov, hfov, height] = [vfov, hfov, height].map(|number| number.map(|Single(number)| number));
+        let Given((Single(right), Single(above))) = shift;
         let direction = match (target, direction) {
             (Some(target), None) => target.0 - position,
             (None, Some(direction)) => direction.0,
@@ -68,20 +74,17 @@ impl Camera {
             (None, None, None) => Projection::Perspective(Fov::Vertical(USUAL_VFOV)),
             (Some(vfov), None, None) => Projection::Perspective(Fov::Vertical(vfov)),
             (None, Some(hfov), None) => Projection::Perspective(Fov::Horizontal(hfov)),
-            (None, None, Some(height)) if height > 0.0 && height.is_finite() => Projection::Orthographic { height },
+            (None, None, Some(height)) if height > 0.0 => Projection::Orthographic { height },
             (None, None, Some(height)) => {
-                return Err(errors::setting(format!("height is a finite number above 0, not {height}")));
+                return Err(errors::setting(format!("height is a number above 0, not {height}")));
             }
             _ => return Err(errors::setting("give one of vfov, hfov and height")),
         };
-        if !(shift.0.is_finite() && shift.1.is_finite()) {
-            return Err(errors::setting("shift must be finite"));
-        }
         // Checks the angle, whichever it is.
         let angle = vfov.or(hfov).unwrap_or(USUAL_VFOV);
         let up = up.map_or(DVec3::Y, |up| up.0);
         let camera = scene::Camera::look_to(Vec3::ZERO, direction, up, angle).or_raise()?;
-        let camera = camera.with_projection(projection).with_shift([shift.0, shift.1]).named(name);
+        let camera = camera.with_projection(projection).with_shift([right, above]).named(name.0);
         Ok(Camera { camera, position })
     }
 
@@ -107,6 +110,20 @@ impl Camera {
     #[getter]
     fn up(&self) -> (f32, f32, f32) {
         self.camera.up.into()
+    }
+
+    /// For `pickle`.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::reduce(py, "Camera", self)
+    }
+
+    /// It never changes: a copy is the same.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 
     fn __repr__(&self) -> String {

@@ -4,10 +4,13 @@ use lightmesh_files::visible;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::argument::Given;
+use crate::process;
+
 /// What `lightmesh info --devices` lists.
 #[pyfunction]
 pub(crate) fn devices(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
-    let reports = py.detach(lightmesh::render::devices);
+    let reports = process::detach(py, lightmesh::render::devices)?;
     let list = PyList::empty(py);
     for report in reports {
         let device = PyDict::new(py);
@@ -26,7 +29,7 @@ pub(crate) fn devices(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
 
 /// Runs the command line program with these arguments, and returns its exit code.
 #[pyfunction]
-pub(crate) fn command(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
-    let line = ["lightmesh".into()].into_iter().chain(arguments);
-    py.detach(|| lightmesh_cli::run_command(line))
+pub(crate) fn command(py: Python<'_>, arguments: Given<Vec<std::ffi::OsString>>) -> PyResult<u8> {
+    let line = ["lightmesh".into()].into_iter().chain(arguments.0);
+    process::detach(py, || lightmesh_cli::run_command(line))
 }

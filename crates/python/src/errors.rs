@@ -5,16 +5,18 @@ use lightmesh::request::{Error, RequestError, StageError};
 use lightmesh::scene::{CameraError, EnvironmentError, GeometryError, LightError};
 use lightmesh::{LoadError, RenderError, SaveError};
 use lightmesh_files::visible;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 /// The classes.
 mod class {
+    pyo3::import_exception!(lightmesh._errors, ArgumentError);
     pyo3::import_exception!(lightmesh._errors, Cancelled);
     pyo3::import_exception!(lightmesh._errors, DeviceError);
     pyo3::import_exception!(lightmesh._errors, DeviceMemoryError);
     pyo3::import_exception!(lightmesh._errors, GeometryError);
     pyo3::import_exception!(lightmesh._errors, HostMemoryError);
+    pyo3::import_exception!(lightmesh._errors, LayersError);
     pyo3::import_exception!(lightmesh._errors, LightmeshError);
     pyo3::import_exception!(lightmesh._errors, MeshFileError);
     pyo3::import_exception!(lightmesh._errors, SaveError);
@@ -48,10 +50,43 @@ pub(crate) fn setting(message: impl Into<String>) -> PyErr {
     class::SettingError::new_err(message.into())
 }
 
+/// An argument of a type that cannot be used, or that is not known.
+pub(crate) fn argument(message: impl Into<String>) -> PyErr {
+    class::ArgumentError::new_err(message.into())
+}
+
 /// An argument of another type than is needed.
 pub(crate) fn wrong_type(needed: &str, object: &Bound<'_, PyAny>) -> PyErr {
     let found = object.get_type().name().map_or_else(|_| "another type".to_owned(), |name| name.to_string());
-    PyTypeError::new_err(format!("give {needed}, not {found}"))
+    argument(format!("give {needed}, not {found}"))
+}
+
+/// What Python itself says of an argument, as an exception of the package.
+pub(crate) fn of_argument(py: Python<'_>, error: PyErr) -> PyErr {
+    let message = || error.value(py).to_string();
+    match () {
+        () if error.is_instance_of::<class::LightmeshError>(py) => error,
+        () if error.is_instance_of::<PyTypeError>(py) => argument(message()),
+        () if error.is_instance_of::<PyValueError>(py) || error.is_instance_of::<PyOverflowError>(py) => {
+            setting(message())
+        }
+        () => error,
+    }
+}
+
+/// A frame that has no layers.
+pub(crate) fn no_layers() -> PyErr {
+    class::LayersError::new_err("the frame has no layers: render it with layers=True")
+}
+
+/// What cannot be done on a device in this process.
+pub(crate) fn device(message: impl Into<String>) -> PyErr {
+    class::DeviceError::new_err(message.into())
+}
+
+/// What has no class of its own.
+pub(crate) fn other(message: impl Into<String>) -> PyErr {
+    class::LightmeshError::new_err(message.into())
 }
 
 /// Arrays that do not make geometry.
@@ -64,7 +99,7 @@ impl IntoException for RequestError {
         match self {
             RequestError::Unknown { name, similar } => {
                 let similar = similar.map_or(String::new(), |name| format!(". Did you mean '{name}'?"));
-                PyTypeError::new_err(format!("unexpected keyword argument '{name}'{similar}"))
+                argument(format!("unexpected keyword argument '{name}'{similar}"))
             }
             RequestError::Save(error) => error.into_exception(),
             RequestError::Output(_) => class::SaveError::new_err(text(&self)),

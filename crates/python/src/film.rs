@@ -1,10 +1,11 @@
 //! Films and sun studies.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use lightmesh::request::files::Files;
-use lightmesh::request::sun::SunHours as Hours;
+use lightmesh::request::sun::{HoursFormat, SunHours as Hours};
 use lightmesh::request::table::Group;
 use lightmesh::request::{Error, Frames, Order, Plan, Request, Session};
 use lightmesh::{Observer, RenderError, Renderer};
@@ -12,13 +13,17 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::argument::Given;
 use crate::errors::{self, OrRaise};
 use crate::frame::Frame;
+use crate::light::LightList;
 use crate::objects::take_objects;
 use crate::planes::plane;
+use crate::process::{self, PerProcess};
 use crate::scene::Scene;
 use crate::settings;
-use crate::watch::{self, Watch, Wishes};
+use crate::target::{self, Target};
+use crate::watch::{self, Part, Watch, Wishes};
 
 /// What a film is of: a scene, or the file of one.
 pub(crate) enum Source {
@@ -41,16 +46,21 @@ impl FromPyObject<'_, '_> for Source {
 /// What a film or a study is made of.
 pub(crate) struct Production {
     source: Source,
-    /// Camera and surroundings that are given as objects.
+    /// Camera, lights and surroundings that are given as objects.
     objects: Box<dyn Fn(&mut Scene) + Send + Sync>,
     order: Order,
 }
 
 impl Production {
-    pub(crate) fn new(source: Source, files: Files, arguments: Option<&Bound<'_, PyDict>>) -> PyResult<Production> {
+    pub(crate) fn new(
+        source: Source,
+        files: Files,
+        lights: Option<LightList>,
+        arguments: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Production> {
         let arguments = arguments.map(|arguments| arguments.copy()).transpose()?;
         let mut request = Request::default();
-        let objects = take_objects(&mut request, arguments.as_ref())?;
+        let objects = take_objects(&mut request, lights, arguments.as_ref())?;
         settings::apply(&mut request, arguments.as_ref(), Group::FILM)?;
         let scene = match &source {
             Source::File(path) => path.clone(),
@@ -85,12 +95,30 @@ impl Production {
     }
 }
 
-/// The frames of a film: iterate over it. With an output, each frame is written before it is returned.
+/// The frames of a film: iterate over it. With an output, each frame is written before it is returned. It goes on in the process that began it only.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Film {
-    engine: Arc<Renderer>,
-    frames: Mutex<Frames>,
+    engine: PerProcess<Arc<Renderer>>,
+    reel: PerProcess<Mutex<Reel>>,
     wishes: Wishes,
+}
+
+/// What of a film is left to do.
+struct Reel {
+    frames: Frames,
+    /// How many were left when it began.
+    total: usize,
+    /// The seconds that its frames took so far.
+    spent: f64,
+}
+
+impl Reel {
+    /// The next frame as a part of the film.
+    fn part(&self) -> Part {
+        let (total, left) = (self.total.max(1) as f64, self.frames.left());
+        let done = self.total - left;
+        Part { before: done as f64 / total, after: (done + 1).min(self.total) as f64 / total, spent: self.spent }
+    }
 }
 
 impl Film {
@@ -106,9 +134,26 @@ impl Film {
             }
             production.session(engine, watch)?.frames(engine, watch)
         };
-        let frames = watch::run(py, wishes.clone_ref(py), begin)?.or_raise()?;
-        Ok(Film { engine: Arc::clone(engine), frames: Mutex::new(frames), wishes })
+        // No frame is done by that.
+        let beginning = Wishes { progress: None, ..wishes.of_part(py, Part::default()) };
+        let frames = watch::run(py, beginning, begin)?.or_raise()?;
+        let reel = Reel { total: frames.left(), frames, spent: 0.0 };
+        let (engine, reel) = (PerProcess::new(Arc::clone(engine)), PerProcess::new(Mutex::new(reel)));
+        Ok(Film { engine, reel, wishes })
     }
+
+    /// The renderer, and what is left to do.
+    fn of_this_process(&self) -> PyResult<(&Renderer, &Mutex<Reel>)> {
+        let both = self.engine.own().zip(self.reel.own());
+        let (engine, reel) = both.ok_or_else(|| {
+            errors::other("the film was begun by another process, from which this one was forked: begin it in this one")
+        })?;
+        Ok((engine, reel))
+    }
+}
+
+fn lock(reel: &Mutex<Reel>) -> MutexGuard<'_, Reel> {
+    reel.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[pymethods]
@@ -118,22 +163,35 @@ impl Film {
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Frame>> {
+        let (engine, reel) = self.of_this_process()?;
+        let part = py.detach(|| lock(reel).part());
+        let mut wishes = self.wishes.of_part(py, part);
+        if part.before == part.after {
+            // There is no frame left to tell of.
+            wishes.progress = None;
+        }
         let next = |watch: &Watch| {
-            let mut frames = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
-            let rendered = frames.next(&self.engine, watch).transpose()?;
-            let request = &frames.plan().order.request;
+            let mut reel = lock(reel);
+            let start = Instant::now();
+            let rendered = reel.frames.next(engine, watch).transpose()?;
+            reel.spent += start.elapsed().as_secs_f64();
+            let request = &reel.frames.plan().order.request;
             Ok::<_, Error>(rendered.map(|rendered| Frame::of_film(rendered, request, watch.notes())))
         };
-        watch::run(py, self.wishes.clone_ref(py), next)?.or_raise()
+        watch::run(py, wishes, next)?.or_raise()
     }
 
     /// How many frames are left.
-    fn __len__(&self, py: Python<'_>) -> usize {
-        py.detach(|| self.frames.lock().unwrap_or_else(PoisonError::into_inner).left())
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        let (_, reel) = self.of_this_process()?;
+        Ok(py.detach(|| lock(reel).frames.left()))
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
-        format!("<lightmesh.Film, {} frames left>", self.__len__(py))
+        match self.__len__(py) {
+            Ok(left) => format!("<lightmesh.Film, {left} frames left>"),
+            Err(_) => "<lightmesh.Film of another process>".to_owned(),
+        }
     }
 }
 
@@ -157,11 +215,18 @@ impl SunHours {
 
 #[pymethods]
 impl SunHours {
-    /// (H, W): hours of direct sun; 0 where no surface is seen.
+    /// (H, W): hours of direct sun; 0 where there is none, and where no surface is seen: `mask` tells which.
     #[getter]
     fn hours<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let found = &slf.get().found;
         plane(slf.as_any(), found.size(), found.hours())
+    }
+
+    /// (H, W): whether a surface is seen. It is the alpha of exr files.
+    #[getter]
+    fn mask<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        let found = &slf.get().found;
+        plane(slf.as_any(), found.size(), found.mask())
     }
 
     /// Hours by object, as the text of a csv file.
@@ -170,9 +235,21 @@ impl SunHours {
         self.found.table()
     }
 
-    /// Writes an exr with the hours, a png with a legend, or a csv with a row for each object. Raises `SaveError`.
-    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.found.save(&path)).or_raise()
+    /// Writes an exr with the hours, a png with a legend, or a csv with a row for each object. `path` may also be a file that is open for writing
+    /// bytes: then `format`, "exr", "png" or "csv", is needed. Raises `SaveError`.
+    #[pyo3(signature = (path, *, format = None))]
+    fn save(&self, py: Python<'_>, path: Target, format: Option<Given<String>>) -> PyResult<()> {
+        let format: Option<HoursFormat> = match &format {
+            Some(name) => Some(name.parse().map_err(|error| errors::setting(format!("{error}")))?),
+            None => None,
+        };
+        match path {
+            Target::Path(path) => process::detach(py, || self.found.save_as(&path, format))?.or_raise(),
+            Target::File(file) => {
+                let format = format.ok_or_else(|| target::no_format("exr, png or csv"))?;
+                target::write(py, &file, &process::detach(py, || self.found.encode(format))?.or_raise()?)
+            }
+        }
     }
 
     fn __repr__(&self) -> String {

@@ -1,6 +1,5 @@
 //! Rendered images.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use lightmesh::image::{Description, Format, Layers, publish};
@@ -13,10 +12,12 @@ use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::errors::OrRaise;
+use crate::errors::{OrRaise, no_layers};
 use crate::mattes::{Mattes, Which};
-use crate::planes::{no_layers, plane, planes};
+use crate::planes::{plane, planes};
+use crate::process;
 use crate::settings;
+use crate::target::{self, Target};
 
 /// A rendered image. Its arrays are views into it that cannot be written; row 0 is the top. Those from `depth` on exist if it was
 /// rendered with `layers=True`.
@@ -194,27 +195,45 @@ impl Frame {
         self.notes.iter().map(|note| visible(note).into_owned()).collect()
     }
 
-    /// Writes a bmp, png, exr or jpg file; the same bytes as the command line. Raises `SaveError`; no partial file is left.
+    /// Writes a bmp, png, exr or jpg file; the same bytes as the command line. `path` may also be a file that is open for writing bytes: then `format` is
+    /// needed. Raises `SaveError`; no partial file is left.
     ///
     /// Settings:
     #[doc = include_str!("docs/save.txt")]
     #[pyo3(signature = (path, **settings))]
-    fn save(&self, py: Python<'_>, path: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+    fn save(&self, py: Python<'_>, path: Target, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         let options = self.options(settings)?;
-        let ready = py.detach(|| self.rendered.image.ready_with(&path, &options)).or_raise()?;
-        publish([ready]).or_raise()
+        let image = &self.rendered.image;
+        match path {
+            Target::Path(path) => {
+                let ready = process::detach(py, || image.ready_with(&path, &options))?.or_raise()?;
+                publish([ready]).or_raise()
+            }
+            Target::File(file) => {
+                let format = options.format.ok_or_else(|| target::no_format("bmp, png, exr or jpg"))?;
+                target::write(py, &file, &process::detach(py, || image.encode(format, &options))?.or_raise()?)
+            }
+        }
     }
 
-    /// Writes all layers as a multilayer exr file.
+    /// Writes all layers as a multilayer exr file. `path` may also be a file that is open for writing bytes.
     ///
     /// Settings:
     #[doc = include_str!("docs/save.txt")]
     #[pyo3(signature = (path, **settings))]
-    fn save_layers(&self, py: Python<'_>, path: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+    fn save_layers(&self, py: Python<'_>, path: Target, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         self.layers()?;
         let options = self.options(settings)?;
-        let ready = py.detach(|| self.rendered.image.ready_layers_with(&path, &options)).or_raise()?;
-        publish([ready]).or_raise()
+        let image = &self.rendered.image;
+        match path {
+            Target::Path(path) => {
+                let ready = process::detach(py, || image.ready_layers_with(&path, &options))?.or_raise()?;
+                publish([ready]).or_raise()
+            }
+            Target::File(file) => {
+                target::write(py, &file, &process::detach(py, || image.encode_layers_with(&options))?.or_raise()?)
+            }
+        }
     }
 
     /// A png file, in memory.
@@ -224,8 +243,8 @@ impl Frame {
     #[pyo3(signature = (**settings))]
     fn to_png<'py>(&self, py: Python<'py>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Bound<'py, PyBytes>> {
         let options = self.options(settings)?;
-        let bytes = py.detach(|| self.rendered.image.encode(Format::Png, &options)).or_raise()?;
-        Ok(PyBytes::new(py, &bytes))
+        let encode = || self.rendered.image.encode(Format::Png, &options);
+        Ok(PyBytes::new(py, &process::detach(py, encode)?.or_raise()?))
     }
 
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {

@@ -5,10 +5,13 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lightmesh::scene::{self, GeometryError, Instancing, MeshPart, SceneBuilder};
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use crate::argument::Given;
 use crate::convert::{self, Points};
 use crate::errors::{self, OrRaise};
 use crate::material::Material;
+use crate::stored::{self, Reduced};
 use crate::texture::Album;
 
 /// If copies of objects in many places have more triangles in all, they are stored once: rays take longer then.
@@ -16,7 +19,7 @@ const MAX_COPIED: usize = 1 << 20;
 
 /// Triangles with materials, in one place or many.
 #[pyclass(frozen, from_py_object, module = "lightmesh")]
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Geometry {
     arrays: Arc<Arrays>,
     places: Vec<DMat4>,
@@ -24,11 +27,16 @@ pub(crate) struct Geometry {
 }
 
 /// What places share.
+#[derive(Serialize, Deserialize)]
 struct Arrays {
     positions: Points,
+    #[serde(with = "scene::packed")]
     normals: Vec<Vec3>,
+    #[serde(with = "scene::packed")]
     uvs: Vec<Vec2>,
+    #[serde(with = "scene::packed")]
     colors: Vec<Vec3>,
+    #[serde(with = "scene::packed")]
     triangles: Vec<[u32; 3]>,
     materials: Vec<Material>,
     /// By triangle; empty: the first.
@@ -41,16 +49,16 @@ impl Geometry {
     ///
     /// `vertices`: (V, 3) `float32` or `float64`, scene units. `triangles`: (T, 3) indices of vertices, counterclockwise seen from the front.
     /// `normals`: (V, 3), need not be of unit length; `None`: flat. `uvs`: (V, 2), origin in the upper left corner of the image, as in glTF.
-    /// `colors`: (V, 3), linear, tint the material. `material` is that of all triangles; or `materials` is a list, and
-    /// `material_indices`, (T,), says which each triangle has. `transforms`: (4, 4), or (N, 4, 4) for N places, in which the object
-    /// is stored once; they are applied to column vectors.
+    /// `colors`: (V, 3), linear, tint the material; those of `uint8` are shares of 255. `material` is that of all triangles; or `materials` is a list,
+    /// and `material_indices`, (T,), says which each triangle has. `transforms`: (4, 4), or (N, 4, 4) for N places, in which the object
+    /// is stored once; they are applied to column vectors, and end in the row 0, 0, 0, 1. `name` is that of the object.
     ///
     /// Raises `GeometryError` for indices out of range and lengths that do not match.
     #[staticmethod]
     #[pyo3(
         signature = (
             vertices, triangles, *, normals = None, uvs = None, colors = None, material = None, materials = None,
-            material_indices = None, transforms = None, name = String::new()
+            material_indices = None, transforms = None, name = Given(String::new())
         ),
         text_signature = "(vertices, triangles, *, normals=None, uvs=None, colors=None, material=None, materials=None, material_indices=None, \
             transforms=None, name='')"
@@ -62,19 +70,19 @@ impl Geometry {
         normals: Option<&Bound<'_, PyAny>>,
         uvs: Option<&Bound<'_, PyAny>>,
         colors: Option<&Bound<'_, PyAny>>,
-        material: Option<Material>,
-        materials: Option<Vec<Material>>,
+        material: Option<Given<Material>>,
+        materials: Option<Given<Vec<Material>>>,
         material_indices: Option<&Bound<'_, PyAny>>,
         transforms: Option<&Bound<'_, PyAny>>,
-        name: String,
+        name: Given<String>,
     ) -> PyResult<Geometry> {
         let materials = match (material, materials) {
             (Some(_), Some(_)) => return Err(errors::setting("give material or materials, not both")),
-            (Some(one), None) => vec![one],
-            (None, Some(many)) if many.is_empty() => {
+            (Some(Given(one)), None) => vec![one],
+            (None, Some(many)) if many.0.is_empty() => {
                 return Err(errors::geometry("materials is empty: give one at least"));
             }
-            (None, Some(many)) => many,
+            (None, Some(Given(many))) => many,
             (None, None) => vec![Material::default_matt()],
         };
         let arrays = Arrays {
@@ -82,13 +90,13 @@ impl Geometry {
             triangles: convert::triangles("triangles", triangles)?,
             normals: normals.map_or(Ok(Vec::new()), |array| convert::vectors("normals", array))?,
             uvs: uvs.map_or(Ok(Vec::new()), |array| convert::pairs("uvs", array))?,
-            colors: colors.map_or(Ok(Vec::new()), |array| convert::vectors("colors", array))?,
+            colors: colors.map_or(Ok(Vec::new()), |array| convert::colors("colors", array))?,
             indices: material_indices.map_or(Ok(Vec::new()), |array| convert::list("material_indices", array))?,
             materials,
         };
         arrays.check()?;
         let places = transforms.map_or(Ok(vec![DMat4::IDENTITY]), |array| convert::transforms("transforms", array))?;
-        Ok(Geometry { arrays: arrays.into(), places, name })
+        Ok(Geometry { arrays: arrays.into(), places, name: name.0 })
     }
 
     /// As it was given; may be empty.
@@ -109,11 +117,25 @@ impl Geometry {
         self.arrays.triangles.len() * self.places.len()
     }
 
-    /// The same object in other places; its arrays are shared.
+    /// The same object in other places, which `transforms` say, perhaps with another `name`; its arrays are shared.
     #[pyo3(signature = (transforms, *, name = None))]
-    fn placed(&self, transforms: &Bound<'_, PyAny>, name: Option<String>) -> PyResult<Geometry> {
+    fn placed(&self, transforms: &Bound<'_, PyAny>, name: Option<Given<String>>) -> PyResult<Geometry> {
         let places = convert::transforms("transforms", transforms)?;
-        Ok(Geometry { places, name: name.unwrap_or_else(|| self.name.clone()), ..self.clone() })
+        Ok(Geometry { places, name: name.map_or_else(|| self.name.clone(), |name| name.0), ..self.clone() })
+    }
+
+    /// For `pickle`.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::reduce(py, "Geometry", self)
+    }
+
+    /// It never changes: a copy is the same.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 
     fn __repr__(&self) -> String {

@@ -3,6 +3,7 @@
 //! Classes wrap the types of the Rust library; settings of a request are keyword arguments ([`settings`]). Arrays of frames are views of the frame's
 //! own memory. Whatever takes time runs on another thread while the interpreter is free ([`watch`]).
 
+mod argument;
 mod cache;
 mod camera;
 mod convert;
@@ -18,9 +19,13 @@ mod mattes;
 mod objects;
 mod planes;
 mod prepared;
+mod process;
 mod renderer;
+mod restored;
 mod scene;
 mod settings;
+mod stored;
+mod target;
 mod texture;
 mod watch;
 
@@ -64,6 +69,9 @@ mod _lightmesh {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::process::begin();
+        // For pickles alone: it is not exported.
+        module.setattr("_restore", wrap_pyfunction!(crate::restored::_restore, module)?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -6,14 +6,18 @@ use glam::{DVec3, Vec3};
 use lightmesh::Scene;
 use lightmesh::scene::{self, Falloff, LightKind};
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use crate::argument::{Given, Single};
 use crate::convert::{Color, Vector};
 use crate::errors::{self, OrRaise};
+use crate::stored::{self, Reduced};
 
 /// A light. With `falloff` "none", 1 fully lights a white surface that faces it, at any distance; with "inverse-square",
 /// `intensity` is in candela (of a directional light in lux): a white surface that faces it at distance d shows I / (π d²), or I / π.
+/// `position` is its centre and `direction` the way that its light goes, in world coordinates; `name` is what files call it.
 #[pyclass(frozen, from_py_object, module = "lightmesh")]
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Light {
     /// At the origin of its scene.
     light: scene::Light,
@@ -21,18 +25,33 @@ pub(crate) struct Light {
     position: DVec3,
 }
 
+/// Lights: one, or a sequence of them.
+pub(crate) struct LightList(pub(crate) Vec<Light>);
+
+impl FromPyObject<'_, '_> for LightList {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<LightList> {
+        if let Ok(one) = object.extract::<Light>() {
+            return Ok(LightList(vec![one]));
+        }
+        let many = object.extract().map_err(|_| errors::wrong_type("a Light or a sequence of them", &object))?;
+        Ok(LightList(many))
+    }
+}
+
 /// What all lights have.
 struct Common {
     intensity: Option<Color>,
-    falloff: String,
-    name: String,
+    falloff: Given<String>,
+    name: Given<String>,
 }
 
 impl Common {
     fn of(self, light: scene::Light, position: DVec3) -> PyResult<Light> {
         let falloff: Falloff = self.falloff.parse().map_err(|error| errors::setting(format!("{error}")))?;
         let intensity = self.intensity.map_or(Vec3::ONE, |color| color.0);
-        Ok(Light { light: light.with_intensity(intensity).with_falloff(falloff).named(self.name), position })
+        Ok(Light { light: light.with_intensity(intensity).with_falloff(falloff).named(self.name.0), position })
     }
 }
 
@@ -61,10 +80,10 @@ fn cone(inner: f32, outer: f32) -> (f32, f32) {
 
 /// A size that may be 0.
 fn extent(name: &str, size: f32) -> PyResult<f32> {
-    if size >= 0.0 && size.is_finite() {
+    if size >= 0.0 {
         return Ok(size);
     }
-    Err(errors::setting(format!("{name} is a finite number that is not negative, not {size}")))
+    Err(errors::setting(format!("{name} is a number that is not negative, not {size}")))
 }
 
 #[pymethods]
@@ -72,33 +91,34 @@ impl Light {
     /// Light from one point, or, where shadows are soft, from a ball of radius `spread`.
     #[staticmethod]
     #[pyo3(
-        signature = (position, *, spread = 0.0, intensity = None, falloff = String::from("none"), name = String::new()),
+        signature = (position, *, spread = Single(0.0), intensity = None, falloff = Given(String::from("none")), name = Given(String::new())),
         text_signature = "(position, *, spread=0.0, intensity=1.0, falloff='none', name='')"
     )]
     fn point(
         position: Vector,
-        spread: f32,
+        spread: Single,
         intensity: Option<Color>,
-        falloff: String,
-        name: String,
+        falloff: Given<String>,
+        name: Given<String>,
     ) -> PyResult<Light> {
-        let light = scene::Light::point(Vec3::ZERO).with_spread(extent("spread", spread)?);
+        let light = scene::Light::point(Vec3::ZERO).with_spread(extent("spread", spread.0)?);
         Common { intensity, falloff, name }.of(light, position.0)
     }
 
     /// Light that travels along `direction`, from a disk of the angular diameter `angle` in degrees; the sun's is 0.53.
     #[staticmethod]
     #[pyo3(
-        signature = (direction, *, angle = 0.0, intensity = None, falloff = String::from("none"), name = String::new()),
+        signature = (direction, *, angle = Single(0.0), intensity = None, falloff = Given(String::from("none")), name = Given(String::new())),
         text_signature = "(direction, *, angle=0.0, intensity=1.0, falloff='none', name='')"
     )]
     fn directional(
         direction: Vector,
-        angle: f32,
+        angle: Single,
         intensity: Option<Color>,
-        falloff: String,
-        name: String,
+        falloff: Given<String>,
+        name: Given<String>,
     ) -> PyResult<Light> {
+        let Single(angle) = angle;
         if !(0.0..=179.0).contains(&angle) {
             return Err(errors::setting(format!("angle is a number of degrees from 0 to 179, not {angle}")));
         }
@@ -111,8 +131,8 @@ impl Light {
     #[staticmethod]
     #[pyo3(
         signature = (
-            position, direction, *, inner = 0.0, outer = 45.0, radius = 0.0, intensity = None, falloff = String::from("none"),
-            name = String::new()
+            position, direction, *, inner = Single(0.0), outer = Single(45.0), radius = Single(0.0), intensity = None,
+            falloff = Given(String::from("none")), name = Given(String::new())
         ),
         text_signature = "(position, direction, *, inner=0.0, outer=45.0, radius=0.0, intensity=1.0, falloff='none', name='')"
     )]
@@ -120,57 +140,57 @@ impl Light {
     fn spot(
         position: Vector,
         direction: Vector,
-        inner: f32,
-        outer: f32,
-        radius: f32,
+        inner: Single,
+        outer: Single,
+        radius: Single,
         intensity: Option<Color>,
-        falloff: String,
-        name: String,
+        falloff: Given<String>,
+        name: Given<String>,
     ) -> PyResult<Light> {
-        let (inner, outer) = cone(inner, outer);
+        let (inner, outer) = cone(inner.0, outer.0);
         let light = scene::Light::spot(Vec3::ZERO, direction.0.as_vec3(), inner, outer).or_raise()?;
-        let light = light.with_radius(extent("radius", radius)?);
+        let light = light.with_radius(extent("radius", radius.0)?);
         Common { intensity, falloff, name }.of(light, position.0)
     }
 
-    /// Light from a ball.
+    /// Light from a ball of this `radius`.
     #[staticmethod]
     #[pyo3(
-        signature = (position, radius, *, intensity = None, falloff = String::from("none"), name = String::new()),
+        signature = (position, radius, *, intensity = None, falloff = Given(String::from("none")), name = Given(String::new())),
         text_signature = "(position, radius, *, intensity=1.0, falloff='none', name='')"
     )]
     fn sphere(
         position: Vector,
-        radius: f32,
+        radius: Single,
         intensity: Option<Color>,
-        falloff: String,
-        name: String,
+        falloff: Given<String>,
+        name: Given<String>,
     ) -> PyResult<Light> {
-        let light = scene::Light::sphere(Vec3::ZERO, radius).or_raise()?;
+        let light = scene::Light::sphere(Vec3::ZERO, radius.0).or_raise()?;
         Common { intensity, falloff, name }.of(light, position.0)
     }
 
-    /// A flat round light. It shines like a surface: along `normal` with `intensity`, aside with the cosine. Not `one_sided`: evenly to all
+    /// A flat round light of this `radius`. It shines like a surface: along `normal` with `intensity`, aside with the cosine. Not `one_sided`: evenly to all
     /// sides.
     #[staticmethod]
     #[pyo3(
         signature = (
-            position, normal, radius, *, one_sided = true, intensity = None, falloff = String::from("none"),
-            name = String::new()
+            position, normal, radius, *, one_sided = Given(true), intensity = None, falloff = Given(String::from("none")),
+            name = Given(String::new())
         ),
         text_signature = "(position, normal, radius, *, one_sided=True, intensity=1.0, falloff='none', name='')"
     )]
     fn disk(
         position: Vector,
         normal: Vector,
-        radius: f32,
-        one_sided: bool,
+        radius: Single,
+        one_sided: Given<bool>,
         intensity: Option<Color>,
-        falloff: String,
-        name: String,
+        falloff: Given<String>,
+        name: Given<String>,
     ) -> PyResult<Light> {
-        let light = scene::Light::disk(Vec3::ZERO, normal.0.as_vec3(), radius).or_raise()?;
-        Common { intensity, falloff, name }.of(light.with_one_sided(one_sided), position.0)
+        let light = scene::Light::disk(Vec3::ZERO, normal.0.as_vec3(), radius.0).or_raise()?;
+        Common { intensity, falloff, name }.of(light.with_one_sided(one_sided.0), position.0)
     }
 
     /// A flat rectangular light: `half_u` and `half_v`, at a right angle, point from its centre to the middles of two sides.
@@ -178,8 +198,8 @@ impl Light {
     #[staticmethod]
     #[pyo3(
         signature = (
-            position, half_u, half_v, *, one_sided = true, intensity = None, falloff = String::from("none"),
-            name = String::new()
+            position, half_u, half_v, *, one_sided = Given(true), intensity = None, falloff = Given(String::from("none")),
+            name = Given(String::new())
         ),
         text_signature = "(position, half_u, half_v, *, one_sided=True, intensity=1.0, falloff='none', name='')"
     )]
@@ -187,14 +207,14 @@ impl Light {
         position: Vector,
         half_u: Vector,
         half_v: Vector,
-        one_sided: bool,
+        one_sided: Given<bool>,
         intensity: Option<Color>,
-        falloff: String,
-        name: String,
+        falloff: Given<String>,
+        name: Given<String>,
     ) -> PyResult<Light> {
         let (u, v) = (half_u.0.as_vec3(), half_v.0.as_vec3());
         let light = scene::Light::rectangle(Vec3::ZERO, u, v).or_raise()?;
-        Common { intensity, falloff, name }.of(light.with_one_sided(one_sided), position.0)
+        Common { intensity, falloff, name }.of(light.with_one_sided(one_sided.0), position.0)
     }
 
     /// `point`, `directional`, `spot`, `sphere`, `disk` or `rectangle`.
@@ -243,7 +263,7 @@ impl Light {
         position: Option<Vector>,
         direction: Option<Vector>,
         intensity: Option<Color>,
-        name: Option<String>,
+        name: Option<Given<String>>,
     ) -> PyResult<Light> {
         let mut light = self.clone();
         if let Some(Vector(position)) = position {
@@ -265,10 +285,24 @@ impl Light {
         if let Some(Color(intensity)) = intensity {
             light.light.intensity = intensity;
         }
-        if let Some(name) = name {
+        if let Some(Given(name)) = name {
             light.light.name = name;
         }
         Ok(light)
+    }
+
+    /// For `pickle`.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::reduce(py, "Light", self)
+    }
+
+    /// It never changes: a copy is the same.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 
     fn __repr__(&self) -> String {

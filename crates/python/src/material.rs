@@ -1,18 +1,26 @@
 //! Materials.
 
+use glam::Vec3;
 use lightmesh::scene::{Material as Surface, NormalMap, Opacity, Principled};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use crate::convert::Color;
+use crate::argument::{Given, Single};
+use crate::convert::{Color, Reflectance};
+use crate::errors;
+use crate::stored::{self, Reduced};
 use crate::texture::{Album, Texture};
 
 /// What a surface reflects, emits and lets through.
 ///
 /// The constructor makes matt surfaces and mirrors of formula (1): `color` is k_d (and k_a), `specular` k_s with the Phong exponent
-/// `shininess`. `Material.principled` is for everything that is described by metallic and roughness.
+/// `shininess`. `Material.principled` is for everything that is described by metallic and roughness. Both have what follows.
+///
+/// `emission` is the radiance that it emits. `texture` tints `color`, `emission_texture` tints `emission`, and `normal_texture` turns normals, by slopes
+/// times `normal_scale`. `opacity` is the share of the light that it stops, a `catcher` shows only the shadows on it, and `name` is what
+/// `Frame.material_ids` call it.
 #[pyclass(frozen, from_py_object, module = "lightmesh")]
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Material {
     /// Without its images.
     surface: Surface,
@@ -22,7 +30,7 @@ pub(crate) struct Material {
 }
 
 /// The images of a material.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 struct Images {
     color: Option<Texture>,
     emission: Option<Texture>,
@@ -32,13 +40,19 @@ struct Images {
 
 impl Images {
     fn new(
-        color: Option<Texture>,
-        emission: Option<Texture>,
-        normals: Option<Texture>,
-        scale: f32,
-        metallic_roughness: Option<Texture>,
+        color: Option<Given<Texture>>,
+        emission: Option<Given<Texture>>,
+        normals: Option<Given<Texture>>,
+        Single(scale): Single,
+        metallic_roughness: Option<Given<Texture>>,
     ) -> Images {
-        Images { color, emission, normals: normals.map(|normals| (normals, scale)), metallic_roughness }
+        let of = |texture: Option<Given<Texture>>| texture.map(|Given(texture)| texture);
+        Images {
+            color: of(color),
+            emission: of(emission),
+            normals: of(normals).map(|normals| (normals, scale)),
+            metallic_roughness: of(metallic_roughness),
+        }
     }
 
     fn is_empty(&self) -> bool {
@@ -51,7 +65,7 @@ fn share(name: &str, value: f32) -> PyResult<f32> {
     if (0.0..=1.0).contains(&value) {
         return Ok(value);
     }
-    Err(PyValueError::new_err(format!("{name} is a number from 0 to 1, not {value}")))
+    Err(errors::setting(format!("{name} is a number from 0 to 1, not {value}")))
 }
 
 impl Material {
@@ -89,38 +103,38 @@ impl Material {
     #[new]
     #[pyo3(
         signature = (
-            color = None, *, specular = None, shininess = 20.0, emission = None, texture = None, emission_texture = None,
-            normal_texture = None, normal_scale = 1.0, opacity = 1.0, catcher = false, name = String::new()
+            color = None, *, specular = None, shininess = Single(20.0), emission = None, texture = None, emission_texture = None,
+            normal_texture = None, normal_scale = Single(1.0), opacity = Single(1.0), catcher = Given(false), name = Given(String::new())
         ),
         text_signature = "(color=0.8, *, specular=0.0, shininess=20.0, emission=0.0, texture=None, emission_texture=None, \
             normal_texture=None, normal_scale=1.0, opacity=1.0, catcher=False, name='')"
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
-        color: Option<Color>,
-        specular: Option<Color>,
-        shininess: f32,
+        color: Option<Reflectance>,
+        specular: Option<Reflectance>,
+        shininess: Single,
         emission: Option<Color>,
-        texture: Option<Texture>,
-        emission_texture: Option<Texture>,
-        normal_texture: Option<Texture>,
-        normal_scale: f32,
-        opacity: f32,
-        catcher: bool,
-        name: String,
+        texture: Option<Given<Texture>>,
+        emission_texture: Option<Given<Texture>>,
+        normal_texture: Option<Given<Texture>>,
+        normal_scale: Single,
+        opacity: Single,
+        catcher: Given<bool>,
+        name: Given<String>,
     ) -> PyResult<Material> {
-        if !(shininess > 0.0 && shininess.is_finite()) {
-            return Err(PyValueError::new_err(format!("shininess is a finite number above 0, not {shininess}")));
+        let Single(shininess) = shininess;
+        if shininess <= 0.0 {
+            return Err(errors::setting(format!("shininess is a number above 0, not {shininess}")));
         }
         let color = color.map_or(Surface::default().kd, |color| color.0);
-        let of = |color: Option<Color>| color.map_or(glam::Vec3::ZERO, |color| color.0);
         let mut surface = Surface::matt(color)
-            .with_ks(of(specular))
+            .with_ks(specular.map_or(Vec3::ZERO, |color| color.0))
             .with_shininess(shininess)
-            .with_emission(of(emission))
-            .with_catcher(catcher)
-            .named(name);
-        let opacity = share("opacity", opacity)?;
+            .with_emission(emission.map_or(Vec3::ZERO, |color| color.0))
+            .with_catcher(catcher.0)
+            .named(name.0);
+        let opacity = share("opacity", opacity.0)?;
         surface.opacity = (opacity < 1.0).then(|| Opacity::blend(opacity));
         let images = Images::new(texture, emission_texture, normal_texture, normal_scale, None);
         Ok(Material { surface, images, opacity: None })
@@ -130,14 +144,17 @@ impl Material {
     ///
     /// `texture` tints `color`; its alpha counts with `alpha_mode` "mask" (what is below `alpha_cutoff` is not there) and "blend".
     /// `metallic_roughness_texture` has roughness in its green and metallic in its blue channel, which are multiplied by the factors.
-    /// `transmission` is the share of what is not metal that goes through as through glass of index `ior`, straight on if `thin`.
+    /// `transmission` is the share of what is not metal that goes through as through glass of index `ior`, straight on if `thin`. `metallic` is the share
+    /// of metal, `roughness` that of its facets, `specular` and `specular_tint` are strength and colour of what is reflected by what is not metal, and
+    /// `alpha` is the opacity.
     #[staticmethod]
     #[pyo3(
         signature = (
-            color = None, *, metallic = 0.0, roughness = 0.5, ior = 1.5, specular = 1.0, specular_tint = None,
-            transmission = 0.0, thin = false, emission = None, alpha = 1.0, alpha_mode = "opaque", alpha_cutoff = 0.5,
-            texture = None, emission_texture = None, normal_texture = None, normal_scale = 1.0,
-            metallic_roughness_texture = None, name = String::new()
+            color = None, *, metallic = Single(0.0), roughness = Single(0.5), ior = Single(1.5), specular = Single(1.0), specular_tint = None,
+            transmission = Single(0.0), thin = Given(false), emission = None, alpha = Single(1.0),
+            alpha_mode = Given(String::from("opaque")), alpha_cutoff = Single(0.5),
+            texture = None, emission_texture = None, normal_texture = None, normal_scale = Single(1.0),
+            metallic_roughness_texture = None, name = Given(String::new())
         ),
         text_signature = "(color=0.8, *, metallic=0.0, roughness=0.5, ior=1.5, specular=1.0, specular_tint=1.0, transmission=0.0, thin=False, \
             emission=0.0, alpha=1.0, alpha_mode='opaque', alpha_cutoff=0.5, texture=None, emission_texture=None, \
@@ -145,61 +162,76 @@ impl Material {
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn principled(
-        color: Option<Color>,
-        metallic: f32,
-        roughness: f32,
-        ior: f32,
-        specular: f32,
-        specular_tint: Option<Color>,
-        transmission: f32,
-        thin: bool,
+        color: Option<Reflectance>,
+        metallic: Single,
+        roughness: Single,
+        ior: Single,
+        specular: Single,
+        specular_tint: Option<Reflectance>,
+        transmission: Single,
+        thin: Given<bool>,
         emission: Option<Color>,
-        alpha: f32,
-        alpha_mode: &str,
-        alpha_cutoff: f32,
-        texture: Option<Texture>,
-        emission_texture: Option<Texture>,
-        normal_texture: Option<Texture>,
-        normal_scale: f32,
-        metallic_roughness_texture: Option<Texture>,
-        name: String,
+        alpha: Single,
+        alpha_mode: Given<String>,
+        alpha_cutoff: Single,
+        texture: Option<Given<Texture>>,
+        emission_texture: Option<Given<Texture>>,
+        normal_texture: Option<Given<Texture>>,
+        normal_scale: Single,
+        metallic_roughness_texture: Option<Given<Texture>>,
+        name: Given<String>,
     ) -> PyResult<Material> {
         let default = Principled::default();
-        if !(ior >= 0.0 && ior.is_finite()) {
-            return Err(PyValueError::new_err(format!("ior is a finite number that is not negative, not {ior}")));
+        let Single(ior) = ior;
+        if ior < 0.0 {
+            return Err(errors::setting(format!("ior is a number that is not negative, not {ior}")));
         }
         let principled = Principled {
             base: color.map_or(Surface::default().kd, |color| color.0),
-            metallic: share("metallic", metallic)?,
-            roughness: share("roughness", roughness)?,
+            metallic: share("metallic", metallic.0)?,
+            roughness: share("roughness", roughness.0)?,
             ior: (ior != 1.5).then_some(ior),
-            specular: share("specular", specular)?,
+            specular: share("specular", specular.0)?,
             specular_color: specular_tint.map_or(default.specular_color, |color| color.0),
-            transmission: share("transmission", transmission)?,
-            thin,
+            transmission: share("transmission", transmission.0)?,
+            thin: thin.0,
             emission: emission.map_or(default.emission, |color| color.0),
             ..default
         };
-        let (factor, cutoff) = (share("alpha", alpha)?, share("alpha_cutoff", alpha_cutoff)?);
+        let (factor, cutoff) = (share("alpha", alpha.0)?, share("alpha_cutoff", alpha_cutoff.0)?);
 
-        let opacity = match alpha_mode {
+        let opacity = match alpha_mode.as_str() {
             "opaque" => None,
             "mask" => Some(Opacity::default().with_factor(factor).with_cutoff(cutoff)),
             "blend" => Some(Opacity::blend(factor)),
             other => {
-                return Err(PyValueError::new_err(format!("alpha_mode is opaque, mask or blend, not '{other}'")));
+                return Err(errors::setting(format!("alpha_mode is opaque, mask or blend, not '{other}'")));
             }
         };
         let images = Images::new(texture, emission_texture, normal_texture, normal_scale, metallic_roughness_texture);
         // What lets light through by transmission says so itself.
         let opacity = opacity.filter(|_| !principled.transmits());
-        Ok(Material { surface: principled.material().named(name), images, opacity })
+        Ok(Material { surface: principled.material().named(name.0), images, opacity })
     }
 
     /// As it was given; may be empty.
     #[getter]
     fn name(&self) -> &str {
         &self.surface.name
+    }
+
+    /// For `pickle`.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::reduce(py, "Material", self)
+    }
+
+    /// It never changes: a copy is the same.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 
     fn __repr__(&self) -> String {

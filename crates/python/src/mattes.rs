@@ -8,7 +8,9 @@ use numpy::ndarray::Array3;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-use crate::planes::{no_layers, plane};
+use crate::errors::no_layers;
+use crate::planes::plane;
+use crate::process;
 
 /// Which things.
 #[derive(Clone, Copy)]
@@ -73,7 +75,7 @@ impl Mattes {
     fn cryptomatte<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray3<f32>>>> {
         let [width, height] = self.rendered.size().map(|side| side as usize);
         let matte = self.matte()?;
-        let pictures = py.detach(|| matte.cryptomatte());
+        let pictures = process::detach(py, || matte.cryptomatte())?;
         let array = |picture: Vec<[f32; 4]>| {
             let array = Array3::from_shape_vec((height, width, 4), picture.into_flattened());
             PyArray3::from_owned_array(py, array.expect("a picture has all pixels of the frame"))

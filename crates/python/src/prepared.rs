@@ -10,9 +10,10 @@ use lightmesh::{RenderError, Renderer as Engine};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::argument::Given;
 use crate::camera::Camera;
 use crate::errors::{self, IntoException, OrRaise};
-use crate::light::Light;
+use crate::light::LightList;
 use crate::objects::take_objects;
 use crate::scene::Scene;
 use crate::settings;
@@ -97,7 +98,11 @@ pub(crate) struct Order {
 
 impl Order {
     /// Takes objects out of the settings, and makes flags of the rest.
-    pub(crate) fn new(subject: &Subject<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Order> {
+    pub(crate) fn new(
+        subject: &Subject<'_>,
+        lights: Option<LightList>,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Order> {
         let (mut scene, mut request, kept) = match subject {
             Subject::Scene(scene) => (scene.try_borrow()?.clone(), Request::default(), None),
             Subject::Prepared(prepared) => {
@@ -106,7 +111,7 @@ impl Order {
             }
         };
         let settings = settings.map(|settings| settings.copy()).transpose()?;
-        take_objects(&mut request, settings.as_ref())?(&mut scene);
+        take_objects(&mut request, lights, settings.as_ref())?(&mut scene);
         settings::apply(&mut request, settings.as_ref(), Group::IMAGE)?;
         let plan = ImagePlan::new(&request, scene.format).or_raise()?;
         Ok(Order { scene, request, plan, kept })
@@ -161,17 +166,18 @@ impl PreparedScene {
         self.kept.prepared.geometry.memory()
     }
 
-    /// The same with other lights; nothing is rebuilt.
-    fn with_lights(&self, lights: Vec<Light>) -> PreparedScene {
+    /// The same with other `lights`, one or a sequence; nothing is rebuilt.
+    fn with_lights(&self, lights: LightList) -> PreparedScene {
         let mut changed = self.clone();
-        changed.scene.set_lights(lights);
+        changed.scene.replace_lights(&lights.0);
+        changed.request.light = Vec::new();
         changed
     }
 
-    /// The same with another camera; nothing is rebuilt.
-    fn with_camera(&self, camera: Camera) -> PreparedScene {
+    /// The same with another `camera`; nothing is rebuilt.
+    fn with_camera(&self, camera: Given<Camera>) -> PreparedScene {
         let mut changed = self.clone();
-        changed.scene.set_camera(Some(camera));
+        changed.scene.set_camera(Some(camera.0));
         (changed.request.camera, changed.request.camera_name) = (None, None);
         changed
     }

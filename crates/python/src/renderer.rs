@@ -11,40 +11,78 @@ use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::argument::Given;
 use crate::cache::MeshCache;
 use crate::convert;
 use crate::errors::{self, IntoException, OrRaise};
 use crate::film::{Film, Production, Source, SunHours};
 use crate::frame::Frame;
-use crate::light::Light;
+use crate::light::LightList;
 use crate::prepared::{Failure, Kept, Order, PreparedScene, Subject};
+use crate::process::{self, PerProcess};
 use crate::scene::Scene;
 use crate::watch::{self, Cancel, Watch, Wishes};
 
-/// Renders scenes on one device: "auto", "cpu", "cuda" or "cuda:1". Can be used by several threads at once; the interpreter is free while it
-/// works. Raises `DeviceError` if the device cannot be used.
+/// Renders scenes on one `device`: "auto", "cpu", "cuda" or "cuda:1", with so many `threads` of the CPU, or all. Can be used by several threads at
+/// once; the interpreter is free while it works. A process that is forked uses it with threads of its own, if the device is the CPU. Raises
+/// `DeviceError` if the device cannot be used.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Renderer {
-    engine: Arc<Engine>,
+    machine: PerProcess<Machine>,
     device: String,
     reason: String,
+    threads: Option<usize>,
+}
+
+/// What renders.
+struct Machine {
+    engine: Arc<Engine>,
     /// What was rendered last, so that its structure stays alive.
     last: Mutex<Option<Kept>>,
+}
+
+impl Machine {
+    fn new(choice: Choice, threads: Option<usize>) -> Result<Machine, RenderError> {
+        Ok(Machine { engine: Arc::new(Engine::on(choice, threads)?), last: Mutex::default() })
+    }
+}
+
+impl Renderer {
+    /// What renders in this process.
+    fn machine(&self) -> PyResult<&Machine> {
+        self.machine.get_or_make(|| {
+            if self.device != Device::Cpu.to_string() {
+                return Err(errors::device(format!(
+                    "{} cannot be used by a process that was forked from one which uses it: start processes by spawn, or make \
+                     renderers on GPUs only after the fork",
+                    self.device
+                )));
+            }
+            Choice::of(Device::Cpu)
+                .and_then(|choice| Machine::new(choice, self.threads))
+                .map_err(IntoException::into_exception)
+        })
+    }
 }
 
 #[pymethods]
 impl Renderer {
     #[new]
-    #[pyo3(signature = (device = "auto", *, threads = None))]
-    fn new(py: Python<'_>, device: &str, threads: Option<usize>) -> PyResult<Renderer> {
+    #[pyo3(
+        signature = (device = Given(String::from("auto")), *, threads = None),
+        text_signature = "(device='auto', *, threads=None)"
+    )]
+    fn new(py: Python<'_>, device: Given<String>, threads: Option<Given<usize>>) -> PyResult<Renderer> {
+        let threads = threads.map(|Given(threads)| threads);
         let device: Device = device.parse().map_err(|error| errors::setting(format!("{error}")))?;
         let made = || {
             let choice = Choice::of(device)?;
             let (chosen, reason) = (choice.device.to_string(), choice.reason.clone());
-            Ok((Arc::new(Engine::on(choice, threads)?), chosen, reason))
+            Ok((PerProcess::new(Machine::new(choice, threads)?), chosen, reason))
         };
-        let (engine, device, reason) = py.detach(made).map_err(|error: RenderError| error.into_exception())?;
-        Ok(Renderer { engine, device, reason, last: Mutex::default() })
+        let made = process::detach(py, made)?;
+        let (machine, device, reason) = made.map_err(|error: RenderError| error.into_exception())?;
+        Ok(Renderer { machine, device, reason, threads })
     }
 
     /// The device in use: "cpu" or "cuda:0".
@@ -59,62 +97,71 @@ impl Renderer {
         &self.reason
     }
 
-    /// Builds the acceleration structure. `before` is the same scene at another moment: what has not moved is kept.
+    /// Builds the acceleration structure of `scene`. `before` is the same scene at another moment: what has not moved is kept. `lights`, one or a
+    /// sequence, stand in for the scene's. `progress` is called now and then, and `cancel` stops it.
     ///
     /// Settings:
     #[doc = include_str!("docs/image.txt")]
-    #[pyo3(signature = (scene, *, before = None, progress = None, cancel = None, **settings))]
+    #[pyo3(signature = (scene, *, before = None, lights = None, progress = None, cancel = None, **settings))]
+    #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn prepare(
         &self,
         py: Python<'_>,
-        scene: Bound<'_, Scene>,
-        before: Option<&PreparedScene>,
-        progress: Option<Py<PyAny>>,
-        cancel: Option<Cancel>,
+        scene: Given<Bound<'_, Scene>>,
+        before: Option<Given<Bound<'_, PreparedScene>>>,
+        lights: Option<LightList>,
+        progress: Option<Given<Py<PyAny>>>,
+        cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PreparedScene> {
-        let order = Order::new(&Subject::Scene(scene), settings)?;
-        let before = before.map(PreparedScene::prepared);
+        let machine = self.machine()?;
+        let order = Order::new(&Subject::Scene(scene.0), lights, settings)?;
+        let before = before.as_ref().map(|before| before.get().prepared());
         let prepare = |watch: &Watch| match watch.cancelled() {
             true => Err(RenderError::Cancelled.into()),
-            false => order.prepare(&self.engine, &self.last, before, watch),
+            false => order.prepare(&machine.engine, &machine.last, before, watch),
         };
-        let (kept, _) = watch::run(py, Wishes { progress, cancel }, prepare)?.or_raise()?;
+        let (kept, _) = watch::run(py, Wishes::new(progress, cancel), prepare)?.or_raise()?;
         Ok(order.prepared(kept))
     }
 
-    /// Renders an image. The structure of the scene rendered last is kept: other lights and cameras cost no building.
+    /// Renders an image of `scene`. The structure of the scene rendered last is kept: other lights and cameras cost no building. `lights`, one or a
+    /// sequence, stand in for the scene's. `cache` keeps what light points see. `progress` is called now and then, and `cancel` stops it.
     ///
     /// Settings:
     #[doc = include_str!("docs/image.txt")]
-    #[pyo3(signature = (scene, *, cache = None, progress = None, cancel = None, **settings))]
+    #[pyo3(signature = (scene, *, cache = None, lights = None, progress = None, cancel = None, **settings))]
+    #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn render(
         &self,
         py: Python<'_>,
         scene: Subject<'_>,
-        cache: Option<&MeshCache>,
-        progress: Option<Py<PyAny>>,
-        cancel: Option<Cancel>,
+        cache: Option<Given<Bound<'_, MeshCache>>>,
+        lights: Option<LightList>,
+        progress: Option<Given<Py<PyAny>>>,
+        cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Frame> {
-        let mut order = Order::new(&scene, settings)?;
+        let machine = self.machine()?;
+        let cache = cache.as_ref().map(|cache| cache.get());
+        let mut order = Order::new(&scene, lights, settings)?;
         order.plan = order.plan.of_picture();
         let render = |watch: &Watch| {
-            let (kept, staged) = order.prepare(&self.engine, &self.last, None, watch)?;
+            let (kept, staged) = order.prepare(&machine.engine, &machine.last, None, watch)?;
             let mut cache = cache.map(MeshCache::lock);
             let (frame, stops) = staged.picture(
                 &kept.prepared,
                 order.plan.settings(),
                 watch,
                 |prepared, settings| match &mut cache {
-                    Some(cache) => self.engine.render_with(cache, prepared, settings, watch),
-                    None => self.engine.render_prepared(prepared, settings, watch),
+                    Some(cache) => machine.engine.render_with(cache, prepared, settings, watch),
+                    None => machine.engine.render_prepared(prepared, settings, watch),
                 },
             )?;
             let refused = cache.and_then(|mut cache| cache.refused());
             Ok((Frame::new(frame, stops, watch.notes(), &kept.prepared.scene), refused))
         };
-        let rendered = watch::run(py, Wishes { progress, cancel }, render)?;
+        let rendered = watch::run(py, Wishes::new(progress, cancel), render)?;
         let (frame, refused): (Frame, Option<MeshFileError>) =
             rendered.map_err(|error: Failure| error.into_exception())?;
         if let Some(refused) = refused {
@@ -124,31 +171,37 @@ impl Renderer {
         Ok(frame)
     }
 
-    /// The frames of a film: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, and `len` says how many are left.
-    /// With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and `mesh_file`, each is written before it is returned; `resume` goes
-    /// on with a film of which some frames are there.
+    /// The frames of a film of `scene`: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, and `len` says how many are
+    /// left. With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and `mesh_file`, each is written before it is returned; `resume`
+    /// goes on with a film of which some frames are there. `lights`, one or a sequence, stand in for the scene's. `progress` is called now and then
+    /// with the share of the whole film, and `cancel` stops it.
     ///
     /// Settings:
     #[doc = include_str!("docs/film.txt")]
-    #[pyo3(signature = (scene, output = None, *, layers_file = None, stats = None, mesh_file = None, progress = None, cancel = None, **settings))]
+    #[pyo3(signature = (scene, output = None, *, layers_file = None, stats = None, mesh_file = None, lights = None, progress = None, cancel = None, **settings))]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn film(
         &self,
         py: Python<'_>,
         scene: Source,
-        output: Option<PathBuf>,
-        layers_file: Option<PathBuf>,
-        stats: Option<PathBuf>,
-        mesh_file: Option<PathBuf>,
-        progress: Option<Py<PyAny>>,
-        cancel: Option<Cancel>,
+        output: Option<Given<PathBuf>>,
+        layers_file: Option<Given<PathBuf>>,
+        stats: Option<Given<PathBuf>>,
+        mesh_file: Option<Given<PathBuf>>,
+        lights: Option<LightList>,
+        progress: Option<Given<Py<PyAny>>>,
+        cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Film> {
-        let files = Files { output, layers: layers_file, stats, mesh_file, sun_hours: Vec::new() };
-        Film::begin(py, &self.engine, Production::new(scene, files, settings)?, Wishes { progress, cancel })
+        let [output, layers, stats, mesh_file] =
+            [output, layers_file, stats, mesh_file].map(|path| path.map(|Given(path)| path));
+        let files = Files { output, layers, stats, mesh_file, sun_hours: Vec::new() };
+        let production = Production::new(scene, files, lights, settings)?;
+        Film::begin(py, &self.machine()?.engine, production, Wishes::new(progress, cancel))
     }
 
-    /// The hours of direct sun on what an image shows, on a day at a place that `sun` says.
+    /// The hours of direct sun on what an image of `scene` shows, on a day at a place that `sun` says. `progress` is called now and then, and `cancel`
+    /// stops it.
     ///
     /// Settings:
     #[doc = include_str!("docs/film.txt")]
@@ -157,20 +210,21 @@ impl Renderer {
         &self,
         py: Python<'_>,
         scene: Source,
-        progress: Option<Py<PyAny>>,
-        cancel: Option<Cancel>,
+        progress: Option<Given<Py<PyAny>>>,
+        cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<SunHours> {
         SunHours::find(
             py,
-            &self.engine,
-            Production::new(scene, Files::default(), settings)?,
-            Wishes { progress, cancel },
+            &self.machine()?.engine,
+            Production::new(scene, Files::default(), None, settings)?,
+            Wishes::new(progress, cancel),
         )
     }
 
-    /// The visible share of each light, (N, L), at surface points (N, 3) with these normals (N, 3), world coordinates: to bake vertex colours and
-    /// lightmaps. `lights` stand in for the scene's. What lies behind a surface is dark.
+    /// The visible share of each light, (N, L), at surface `points` (N, 3) of `scene` with these `normals` (N, 3), world coordinates: to bake vertex
+    /// colours and lightmaps. `lights`, one or a sequence, stand in for the scene's. What lies behind a surface is dark. `progress` is called now and
+    /// then, and `cancel` stops it.
     ///
     /// Settings:
     #[doc = include_str!("docs/image.txt")]
@@ -182,13 +236,14 @@ impl Renderer {
         points: &Bound<'py, PyAny>,
         normals: &Bound<'py, PyAny>,
         scene: Subject<'_>,
-        lights: Option<Vec<Light>>,
-        progress: Option<Py<PyAny>>,
-        cancel: Option<Cancel>,
+        lights: Option<LightList>,
+        progress: Option<Given<Py<PyAny>>>,
+        cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let mut order = Order::new(&scene, settings)?;
-        if let Some(lights) = lights {
+        let machine = self.machine()?;
+        let mut order = Order::new(&scene, None, settings)?;
+        if let Some(LightList(lights)) = lights {
             order.scene.set_all_lights(&lights);
         }
         // Those that an image gets by default are nobody's.
@@ -196,13 +251,13 @@ impl Renderer {
         let points = convert::points("points", points)?.double();
         let normals = convert::vectors("normals", normals)?;
         let find = |watch: &Watch| {
-            let (kept, _) = order.prepare(&self.engine, &self.last, None, watch)?;
+            let (kept, _) = order.prepare(&machine.engine, &machine.last, None, watch)?;
             let world = &kept.prepared.scene;
             let local: Vec<Vec3> = points.iter().map(|&point| world.to_local(point)).collect();
-            let found = self.engine.visibility(&kept.prepared, &local, &normals, order.plan.settings(), watch)?;
+            let found = machine.engine.visibility(&kept.prepared, &local, &normals, order.plan.settings(), watch)?;
             Ok::<_, Failure>(([found.lights(), found.points()], found.into_shares()))
         };
-        let (shape, shares) = watch::run(py, Wishes { progress, cancel }, find)?.or_raise()?;
+        let (shape, shares) = watch::run(py, Wishes::new(progress, cancel), find)?.or_raise()?;
         // By light, then point, in memory.
         let array: Bound<'py, PyArray2<f32>> = convert::owned(py, shares).reshape(shape)?;
         array.getattr("T")
@@ -213,19 +268,22 @@ impl Renderer {
     }
 }
 
-/// `Renderer.visibility` on a renderer of its own.
+/// `Renderer.visibility` of `points` with `normals` in `scene`, lit by `lights`, on a renderer of its own on `device`.
 ///
 /// Settings:
 #[doc = include_str!("docs/image.txt")]
 #[pyfunction]
-#[pyo3(signature = (points, normals, scene, lights = None, *, device = "auto", **settings))]
+#[pyo3(
+    signature = (points, normals, scene, lights = None, *, device = Given(String::from("auto")), **settings),
+    text_signature = "(points, normals, scene, lights=None, *, device='auto', **settings)"
+)]
 pub(crate) fn visibility<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     normals: &Bound<'py, PyAny>,
     scene: Subject<'_>,
-    lights: Option<Vec<Light>>,
-    device: &str,
+    lights: Option<LightList>,
+    device: Given<String>,
     settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     Renderer::new(py, device, None)?.visibility(py, points, normals, scene, lights, None, None, settings)

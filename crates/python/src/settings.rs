@@ -1,12 +1,13 @@
 //! Keyword arguments as settings of a request; `None` stands for a setting that is not given.
 
 use lightmesh::request::Request;
-use lightmesh::request::table::{Group, Value};
-use pyo3::exceptions::PyTypeError;
+use lightmesh::request::field;
+use lightmesh::request::table::{Group, Shape, Value};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
 
-use crate::errors::OrRaise;
+use crate::convert::{Color, is_coded};
+use crate::errors::{self, OrRaise};
 
 /// Sets what keyword arguments say, of these groups of settings.
 pub(crate) fn apply(request: &mut Request, arguments: Option<&Bound<'_, PyDict>>, groups: &[Group]) -> PyResult<()> {
@@ -15,11 +16,16 @@ pub(crate) fn apply(request: &mut Request, arguments: Option<&Bound<'_, PyDict>>
             continue;
         }
         let name = name.extract::<String>()?;
+        let is_color = field(&name).is_some_and(|field| field.shape == Shape::Color);
+        if is_color && is_coded(&argument) {
+            let Color(color) = argument.extract()?;
+            let shares = color.to_array().map(|channel| Value::Number(channel.into())).into();
+            request.set_in(&name, Value::List(shares), |group| groups.contains(&group)).or_raise()?;
+            continue;
+        }
         let value = value(&argument).map_err(|_| {
             let kind = argument.get_type().name().map_or_else(|_| "this".to_owned(), |name| name.to_string());
-            PyTypeError::new_err(format!(
-                "{name} cannot be of type {kind}: give a number, a text or a sequence of numbers"
-            ))
+            errors::argument(format!("{name} cannot be of type {kind}: give a number, a text or a sequence of numbers"))
         })?;
         request.set_in(&name, value, |group| groups.contains(&group)).or_raise()?;
     }

@@ -5,18 +5,21 @@ use std::sync::Arc;
 
 use glam::Affine2;
 use lightmesh::scene::{Texture as Image, TextureUse, Wrap};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use crate::argument::Given;
 use crate::convert;
+use crate::errors;
+use crate::stored::{self, Reduced};
 
 /// An image on a surface, with the way it is placed.
 ///
 /// `pixels` has shape (H, W, 3) or (H, W, 4), `uint8`, row 0 at the top: colours as sRGB, data (normals, roughness) as they are. `wrap`
 /// says how it goes on beyond its edges, across and down. `transform`, shape (2, 3), takes the texture coordinates of vertices to those
-/// of the image, whose origin is the upper left corner.
+/// of the image, whose origin is the upper left corner. `name` is for display.
 #[pyclass(frozen, from_py_object, module = "lightmesh")]
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Texture {
     image: Arc<Image>,
     wrap: [Wrap; 2],
@@ -36,7 +39,7 @@ impl Wraps {
             "repeat" => Ok(Wrap::Repeat),
             "mirror" => Ok(Wrap::Mirror),
             "clamp" => Ok(Wrap::Clamp),
-            other => Err(PyValueError::new_err(format!("wrap is repeat, mirror or clamp, not '{other}'"))),
+            other => Err(errors::setting(format!("wrap is repeat, mirror or clamp, not '{other}'"))),
         };
         match self {
             Wraps::Both(name) => Ok([named(name)?; 2]),
@@ -49,23 +52,23 @@ impl Wraps {
 impl Texture {
     #[new]
     #[pyo3(
-        signature = (pixels, *, wrap = None, transform = None, name = String::new()),
+        signature = (pixels, *, wrap = None, transform = None, name = Given(String::new())),
         text_signature = "(pixels, *, wrap='repeat', transform=None, name='')"
     )]
     fn new(
         pixels: &Bound<'_, PyAny>,
-        wrap: Option<Wraps>,
+        wrap: Option<Given<Wraps>>,
         transform: Option<&Bound<'_, PyAny>>,
-        name: String,
+        name: Given<String>,
     ) -> PyResult<Texture> {
         let kind = pixels.py().import("numpy")?.call_method1("asarray", (pixels,))?.getattr("dtype")?.to_string();
         if kind != "uint8" {
-            return Err(PyValueError::new_err(format!("pixels must be of type uint8, not {kind}")));
+            return Err(errors::setting(format!("pixels must be of type uint8, not {kind}")));
         }
         let (size, channels, values) = convert::image::<u8>("pixels", pixels, "uint8")?;
         let texel = |texel: &[u8]| [texel[0], texel[1], texel[2], texel.get(3).copied().unwrap_or(u8::MAX)];
         let texels = values.chunks_exact(channels).map(texel).collect();
-        let image = Arc::new(Image { name, size, texels });
+        let image = Arc::new(Image { name: name.0, size, texels });
         Texture { image, wrap: [Wrap::Repeat; 2], transform: Affine2::IDENTITY }.placed(wrap, transform)
     }
 
@@ -83,15 +86,29 @@ impl Texture {
 
     /// The same image, placed otherwise; nothing is copied.
     #[pyo3(signature = (*, wrap = None, transform = None))]
-    fn placed(&self, wrap: Option<Wraps>, transform: Option<&Bound<'_, PyAny>>) -> PyResult<Texture> {
+    fn placed(&self, wrap: Option<Given<Wraps>>, transform: Option<&Bound<'_, PyAny>>) -> PyResult<Texture> {
         let mut placed = self.clone();
-        if let Some(wrap) = wrap {
+        if let Some(Given(wrap)) = wrap {
             placed.wrap = wrap.read()?;
         }
         if let Some(transform) = transform {
             placed.transform = convert::affine("transform", transform)?;
         }
         Ok(placed)
+    }
+
+    /// For `pickle`.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::reduce(py, "Texture", self)
+    }
+
+    /// It never changes: a copy is the same.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 
     fn __repr__(&self) -> String {

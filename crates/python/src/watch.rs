@@ -13,14 +13,17 @@ use lightmesh::request::Host;
 use lightmesh::{Observer, Stage};
 use pyo3::prelude::*;
 
+use crate::argument::Given;
+use crate::process;
+
 /// How often the caller's thread looks in.
 const TICK: Duration = Duration::from_millis(40);
 
-/// How far a render has come.
+/// How far a render, or the whole of a film, has come.
 #[pyclass(frozen, module = "lightmesh")]
 #[derive(Clone)]
 pub(crate) struct Progress {
-    /// From 0 to 1.
+    /// The share of all work that is done, from 0 to 1; it never falls, and is 1 in the end.
     #[pyo3(get)]
     done: f64,
     /// Since the beginning.
@@ -76,12 +79,47 @@ impl Cancel {
 pub(crate) struct Wishes {
     pub(crate) progress: Option<Py<PyAny>>,
     pub(crate) cancel: Option<Cancel>,
+    pub(crate) part: Part,
+}
+
+/// Of which part of the whole a caller waits for the end, such as a frame of a film.
+#[derive(Clone, Copy)]
+pub(crate) struct Part {
+    /// The share of the whole that is done before it, and after it.
+    pub(crate) before: f64,
+    pub(crate) after: f64,
+    /// The seconds that all before it took.
+    pub(crate) spent: f64,
+}
+
+impl Default for Part {
+    /// The whole.
+    fn default() -> Part {
+        Part { before: 0.0, after: 1.0, spent: 0.0 }
+    }
+}
+
+impl Part {
+    /// Progress of the part as progress of the whole.
+    fn of_whole(self, progress: lightmesh::render::Progress, stage: String) -> Progress {
+        let Part { before, after, spent } = self;
+        let (done, seconds) = (before + (after - before) * progress.done, spent + progress.seconds);
+        let is_whole = before == 0.0 && after == 1.0;
+        let in_proportion = || (done > 0.0).then(|| seconds * (1.0 - done) / done);
+        Progress { done, seconds, left: if is_whole { progress.left } else { in_proportion() }, stage }
+    }
 }
 
 impl Wishes {
-    /// The same again.
-    pub(crate) fn clone_ref(&self, py: Python<'_>) -> Wishes {
-        Wishes { progress: self.progress.as_ref().map(|callback| callback.clone_ref(py)), cancel: self.cancel.clone() }
+    pub(crate) fn new(progress: Option<Given<Py<PyAny>>>, cancel: Option<Given<Cancel>>) -> Wishes {
+        let (progress, cancel) = (progress.map(|Given(progress)| progress), cancel.map(|Given(cancel)| cancel));
+        Wishes { progress, cancel, part: Part::default() }
+    }
+
+    /// The same for a part of the whole.
+    pub(crate) fn of_part(&self, py: Python<'_>, part: Part) -> Wishes {
+        let progress = self.progress.as_ref().map(|callback| callback.clone_ref(py));
+        Wishes { progress, cancel: self.cancel.clone(), part }
     }
 }
 
@@ -91,6 +129,7 @@ pub(crate) struct Watch {
     changed: Condvar,
     stop: AtomicBool,
     cancel: Option<Cancel>,
+    part: Part,
 }
 
 #[derive(Default)]
@@ -103,8 +142,8 @@ struct State {
 }
 
 impl Watch {
-    fn new(cancel: Option<Cancel>) -> Watch {
-        Watch { state: Mutex::default(), changed: Condvar::new(), stop: AtomicBool::new(false), cancel }
+    fn new(cancel: Option<Cancel>, part: Part) -> Watch {
+        Watch { state: Mutex::default(), changed: Condvar::new(), stop: AtomicBool::new(false), cancel, part }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -124,9 +163,20 @@ impl Watch {
             .wait_timeout_while(state, TICK, |state| !state.is_over)
             .unwrap_or_else(PoisonError::into_inner);
         let is_new = std::mem::take(&mut state.is_new);
-        let lightmesh::render::Progress { done, seconds, left } = state.progress;
+        (state.is_over, is_new.then(|| self.told(&state)))
+    }
+
+    fn told(&self, state: &State) -> Progress {
         let stage = state.stage.map_or(String::new(), |stage| stage.name().to_owned());
-        (state.is_over, is_new.then_some(Progress { done, seconds, left, stage }))
+        self.part.of_whole(state.progress, stage)
+    }
+
+    /// All of it is done; what is told of that, unless it was told before.
+    fn complete(&self) -> Option<Progress> {
+        let mut state = self.state();
+        let was_told = state.progress.done >= 1.0 && !state.is_new;
+        (state.progress.done, state.progress.left) = (1.0, Some(0.0));
+        (!was_told).then(|| self.told(&state))
     }
 
     fn finish(&self) {
@@ -142,7 +192,9 @@ impl Observer for Watch {
 
     fn progress(&self, progress: lightmesh::render::Progress) {
         let mut state = self.state();
-        (state.progress, state.is_new) = (progress, true);
+        // Mirrors make more work while they are traced, and some of it is repeated where memory is short: a share that was told stays.
+        let done = progress.done.max(state.progress.done).min(1.0);
+        (state.progress, state.is_new) = (lightmesh::render::Progress { done, ..progress }, true);
     }
 
     fn note(&self, text: &str) {
@@ -169,9 +221,13 @@ impl Drop for Ending<'_> {
 }
 
 /// Does `work` on another thread. Returns what it returns, unless something is raised meanwhile.
-pub(crate) fn run<T: Send>(py: Python<'_>, wishes: Wishes, work: impl FnOnce(&Watch) -> T + Send) -> PyResult<T> {
-    let Wishes { progress, cancel } = wishes;
-    let watch = Watch::new(cancel);
+pub(crate) fn run<T: Send, E: Send>(
+    py: Python<'_>,
+    wishes: Wishes,
+    work: impl FnOnce(&Watch) -> Result<T, E> + Send,
+) -> PyResult<Result<T, E>> {
+    let Wishes { progress, cancel, part } = wishes;
+    let watch = Watch::new(cancel, part);
     let attend = |py: Python<'_>, news: Option<Progress>| -> PyResult<()> {
         py.check_signals()?;
         if let (Some(callback), Some(news)) = (&progress, news) {
@@ -183,7 +239,7 @@ pub(crate) fn run<T: Send>(py: Python<'_>, wishes: Wishes, work: impl FnOnce(&Wa
         thread::scope(|scope| {
             let worker = scope.spawn(|| {
                 let _ending = Ending(&watch);
-                work(&watch)
+                process::run(|| work(&watch))
             });
             let mut raised = None;
             loop {
@@ -199,8 +255,14 @@ pub(crate) fn run<T: Send>(py: Python<'_>, wishes: Wishes, work: impl FnOnce(&Wa
             (worker.join().unwrap_or_else(|panic| resume_unwind(panic)), raised)
         })
     });
-    match raised {
-        Some(raised) => Err(raised),
-        None => Ok(result),
+    if let Some(raised) = raised {
+        return Err(raised);
     }
+    let result = result?;
+    // A render that was stopped may have given what was finished.
+    let is_complete = result.is_ok() && !watch.cancelled() && progress.is_some();
+    if let Some(news) = is_complete.then(|| watch.complete()).flatten() {
+        attend(py, Some(news))?;
+    }
+    Ok(result)
 }

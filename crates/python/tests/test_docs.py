@@ -2,12 +2,14 @@
 
 import ast
 import inspect
+import re
 from pathlib import Path
 
 import pytest
 
 import lightmesh
 from lightmesh import _lightmesh
+from lightmesh.typing import FilmSettings, ImageSettings, OpenSettings, SaveSettings
 
 
 def words(text: str | None) -> str:
@@ -52,3 +54,49 @@ def test_everything_is_documented():
             members = [member for member in vars(thing) if not member.startswith("_")]
             bare = [member for member in members if not inspect.getdoc(getattr(thing, member))]
             assert bare == [], name
+
+
+#: What takes settings, and their type.
+SETTINGS = {
+    "Renderer.prepare": ImageSettings,
+    "Renderer.render": ImageSettings,
+    "Renderer.visibility": ImageSettings,
+    "visibility": ImageSettings,
+    "Renderer.film": FilmSettings,
+    "Renderer.sun_hours": FilmSettings,
+    "Scene.open": OpenSettings,
+    "Frame.save": SaveSettings,
+    "Frame.save_layers": SaveSettings,
+    "Frame.to_png": SaveSettings,
+}
+
+
+def functions() -> dict[str, tuple[object, str]]:
+    """All functions that users call, with what `help` says of them; of constructors and methods, with what it says of the class."""
+    found = {}
+    for name in lightmesh.__all__:
+        thing = getattr(lightmesh, name)
+        if inspect.isclass(thing) and not issubclass(thing, Exception):
+            text = inspect.getdoc(thing) or ""
+            if thing.__text_signature__:
+                found[name] = (thing, text)
+            for member in vars(thing):
+                function = getattr(thing, member)
+                if not member.startswith("_") and callable(function):
+                    found[f"{name}.{member}"] = (function, f"{inspect.getdoc(function)} {text}")
+        elif inspect.isroutine(thing):
+            found[name] = (thing, inspect.getdoc(thing) or "")
+    return found
+
+
+@pytest.mark.parametrize("name", functions())
+def test_help_has_every_parameter(name):
+    """It is named in backquotes where it is explained, and settings are listed with their types and what they do."""
+    function, text = functions()[name]
+    parameters = [p for p in inspect.signature(function).parameters.values() if p.name not in ("self", "cls")]
+    settings = [p for p in parameters if p.kind is p.VAR_KEYWORD]
+    bare = [p.name for p in parameters if p not in settings and f"`{p.name}`" not in text]
+    assert bare == [], text
+    assert bool(settings) == (name in SETTINGS)
+    for keyword in SETTINGS[name].__annotations__ if settings else ():
+        assert re.search(rf"^{keyword}: .+\n    .+", text, re.MULTILINE), keyword

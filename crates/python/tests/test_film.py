@@ -1,5 +1,6 @@
 """Films and sun studies: the frames that the command line writes, one by one."""
 
+import io
 import subprocess
 import sys
 
@@ -64,7 +65,7 @@ def test_a_scene_of_arrays(renderer, scene, tmp_path):
 def test_what_is_no_film(renderer, scene):
     with pytest.raises(lightmesh.SettingError, match="turntable"):
         renderer.film(scene, size=(32, 24))
-    with pytest.raises(TypeError, match="unexpected keyword argument 'turntabel'. Did you mean 'turntable'?"):
+    with pytest.raises(lightmesh.ArgumentError, match="unexpected keyword argument 'turntabel'. Did you mean 'turntable'?"):
         renderer.film(scene, turntabel=3)
     with pytest.raises(lightmesh.SettingError, match="turntable cannot be 0: 0 is not in 1..=1000000"):
         renderer.film(scene, turntable=0)
@@ -82,11 +83,22 @@ def test_cancelled(renderer, scene):
     assert list(film) == []
 
 
-def test_progress(renderer, scene):
-    seen = []
-    for _ in renderer.film(scene, turntable=2, size=(64, 48), progress=lambda progress: seen.append(progress.done)):
-        pass
-    assert seen and all(0.0 <= done <= 1.0 for done in seen)
+def test_progress_is_of_the_whole_film(renderer, scene):
+    seen, ends = [], []
+    for _ in renderer.film(scene, turntable=4, size=(64, 48), progress=seen.append):
+        ends.append(seen[-1].done)
+    shares = [progress.done for progress in seen]
+    assert shares == sorted(shares) and ends == [0.25, 0.5, 0.75, 1.0] and shares[-1] == 1.0
+    assert all(a.seconds <= b.seconds for a, b in zip(seen, seen[1:]))
+
+
+def test_progress_of_a_film_that_goes_on(renderer, tmp_path):
+    film = {"output": tmp_path / "f.#.png", "turntable": 4, "resume": True, **SETTINGS}
+    next(renderer.film("builtin:gazebo", **film))
+    ends, seen = [], []
+    for _ in renderer.film("builtin:gazebo", progress=seen.append, **film):
+        ends.append(seen[-1].done)
+    assert ends == pytest.approx([1 / 3, 2 / 3, 1.0])
 
 
 def test_hours_of_direct_sun(renderer, tmp_path):
@@ -97,8 +109,33 @@ def test_hours_of_direct_sun(renderer, tmp_path):
         found.save(tmp_path / f"b.{extension}")
         assert (tmp_path / f"a.{extension}").read_bytes() == (tmp_path / f"b.{extension}").read_bytes()
     assert found.table.startswith("object,pixels,")
+    for extension in ("exr", "png", "csv"):
+        memory = io.BytesIO()
+        found.save(memory, format=extension)
+        assert memory.getvalue() == (tmp_path / f"a.{extension}").read_bytes()
+    found.save(tmp_path / "c", format="csv")
+    assert (tmp_path / "c").read_text() == found.table
+    with pytest.raises(lightmesh.SettingError, match="exr, png or csv"):
+        found.save(io.BytesIO())
+    with pytest.raises(lightmesh.SettingError, match="no format of hours `bmp`"):
+        found.save(tmp_path / "d", format="bmp")
     with pytest.raises(lightmesh.SettingError, match="unknown format"):
         found.save(tmp_path / "b.txt")
+
+
+def test_no_sun_is_not_no_surface(renderer, scene):
+    """The mask is what a frame of the same view sees, and what the table counts."""
+    # Of the cube's north, which the sun does not see.
+    scene.camera = lightmesh.Camera((-1.0, 3.0, -5.0), (0.0, 0.7, 0.0))
+    found = renderer.sun_hours(scene, sun=DAY, no_studio=True, **SETTINGS)
+    seen = np.isfinite(renderer.render(scene, layers=True, aa=1, **SETTINGS).depth)
+    assert found.mask.shape == found.hours.shape and found.mask.dtype == np.bool_
+    np.testing.assert_array_equal(found.mask, seen)
+    assert (found.hours[~found.mask] == 0).all() and (found.hours[found.mask] == 0).any() and (~found.mask).any()
+    rows = found.table.strip().splitlines()[1:]
+    assert sum(int(row.rsplit(",", 6)[1]) for row in rows) == found.mask.sum()
+    with pytest.raises(ValueError, match="WRITEABLE"):
+        found.mask.flags.writeable = True
 
 
 @pytest.mark.parametrize("function", ["film", "sun_hours", "render", "prepare", "visibility"])

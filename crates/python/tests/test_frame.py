@@ -1,7 +1,9 @@
 """Frames: their arrays are views, of the right shapes; files and notebooks."""
 
 import gc
+import io
 import sys
+import tempfile
 
 import numpy as np
 import pytest
@@ -120,6 +122,43 @@ def test_files(renderer, scene, tmp_path, extension):
     assert path.stat().st_size > 100
     frame.save(str(tmp_path / "b"), format=extension)
     assert (tmp_path / "b").read_bytes() == path.read_bytes()
+
+
+@pytest.mark.parametrize("extension", ["bmp", "png", "exr", "jpg"])
+def test_open_files(renderer, scene, tmp_path, extension):
+    """The same bytes as in a file of a path."""
+    frame = renderer.render(scene, size=SIZE, layers=True)
+    frame.save(tmp_path / f"a.{extension}", bit_depth=16 if extension == "png" else None)
+    expected = (tmp_path / f"a.{extension}").read_bytes()
+    memory = io.BytesIO(b"")
+    frame.save(memory, format=extension, bit_depth=16 if extension == "png" else None)
+    assert memory.getvalue() == expected
+    with open(tmp_path / "b", "wb") as file, tempfile.NamedTemporaryFile() as temporary:
+        for each in (file, temporary):
+            frame.save(each, format=extension, bit_depth=16 if extension == "png" else None)
+        temporary.seek(0)
+        assert temporary.read() == expected
+    assert (tmp_path / "b").read_bytes() == expected
+
+
+def test_layers_in_open_files(frame, tmp_path):
+    memory = io.BytesIO()
+    frame.save_layers(memory, exr_type="half")
+    frame.save_layers(tmp_path / "a.exr", exr_type="half")
+    assert memory.getvalue() == (tmp_path / "a.exr").read_bytes()
+
+
+def test_open_files_that_cannot_be_used(frame, tmp_path):
+    with pytest.raises(lightmesh.SettingError, match="format='png'"):
+        frame.save(io.BytesIO())
+    with pytest.raises(lightmesh.ArgumentError, match="open it in binary mode"):
+        frame.save(io.StringIO(), format="png")
+    with pytest.raises(lightmesh.ArgumentError, match="path: give a path or a file that is open for writing, not int"):
+        frame.save(5)
+    with open(tmp_path / "a", "wb") as file:
+        pass
+    with pytest.raises(ValueError, match="closed"):
+        frame.save(file, format="png")
 
 
 def test_what_cannot_be_saved(frame, tmp_path):

@@ -23,9 +23,51 @@ def test_progress(renderer, scene):
     seen = []
     renderer.render(scene, size=(640, 480), mode="area", samples=64, progress=seen.append)
     assert seen and seen[-1].done == 1.0
-    assert all(a.seconds <= b.seconds for a, b in zip(seen, seen[1:]))
+    assert all(a.done <= b.done and a.seconds <= b.seconds for a, b in zip(seen, seen[1:]))
     assert all(0.0 <= progress.done <= 1.0 and progress.stage for progress in seen)
     assert all(progress.left is None or progress.left >= 0.0 for progress in seen)
+
+
+def mirrors() -> Scene:
+    """Mirrors make more work while they are traced."""
+    mirror = lightmesh.Material(0.1, specular=0.9)
+    return Scene([floor(), cube(mirror)], [Light.sphere((2.0, 4.0, 1.0), 0.5)], camera())
+
+
+@pytest.mark.parametrize("settings", [{}, {"bounces": 6}, {"ambient_light": "mesh"}, {"lookup": "half-ball"}, {"memory_limit": "600M"}], ids=str)
+def test_progress_never_falls(renderer, settings):
+    shares = []
+    renderer.render(mirrors(), size=(320, 240), progress=lambda progress: shares.append(progress.done), **settings)
+    assert shares == sorted(shares) and shares[-1] == 1.0
+
+
+def test_progress_ends_whatever_is_done(renderer, scene):
+    for work in (
+        lambda **watched: renderer.prepare(scene, **watched),
+        lambda **watched: renderer.sun_hours("builtin:gazebo", sun="54.98,82.9,2026-06-21+07:00,09:00-15:00/3h", size=(16, 12), **watched),
+        lambda **watched: renderer.visibility([(0, 0, 0)], [(0, 1, 0)], scene, **watched),
+    ):
+        shares = []
+        work(progress=lambda progress: shares.append(progress.done))
+        assert shares == sorted(shares) and shares[-1] == 1.0
+
+
+def test_tqdm_follows(renderer, scene):
+    tqdm = pytest.importorskip("tqdm")
+    steps = []
+
+    class Bar(tqdm.tqdm):
+        def update(self, n=1):
+            steps.append(n)
+            return super().update(n)
+
+    with Bar(total=100, disable=None, file=open(os.devnull, "w")) as bar:
+        for _ in renderer.film(scene, turntable=3, size=(64, 48), progress=lightmesh.follow(bar)):
+            pass
+        assert bar.disable or bar.n == pytest.approx(100.0)
+    with Bar(total=100, file=open(os.devnull, "w"), mininterval=0) as bar:
+        renderer.render(scene, size=(320, 240), progress=lightmesh.follow(bar))
+        assert bar.n == pytest.approx(100.0) and min(steps) >= 0.0
 
 
 def test_callback_is_called_by_the_thread_that_asked(renderer, scene):

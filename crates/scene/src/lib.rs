@@ -32,6 +32,8 @@ pub use glam;
 pub use build::{CreaseAngle, GeometryError, LoadError, LoadOptions, MeshPart, Place, SceneBuilder, SceneFormat};
 pub use export::{AnimationInfo, BoundsInfo, CameraInfo, ExportError, LightInfo, SceneInfo};
 pub use formats::EnvironmentError;
+#[doc(hidden)]
+pub use model::packed;
 pub use model::{
     Affine, Animation, Bounds, Camera, CameraError, Dielectric, Environment, EnvironmentLevel, FIRST_INSTANCED, Facets,
     Falloff, Fov, Geometry, Instance, Instances, Instancing, Light, LightError, LightKind, LightMeshDefaults, Lights,

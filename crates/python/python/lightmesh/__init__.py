@@ -9,11 +9,13 @@
 """
 
 from ._errors import (
+    ArgumentError,
     Cancelled,
     DeviceError,
     DeviceMemoryError,
     GeometryError,
     HostMemoryError,
+    LayersError,
     LightmeshError,
     MeshFileError,
     MeshFileWarning,
@@ -46,6 +48,7 @@ from ._lightmesh import (
 from ._progress import follow
 
 __all__ = [
+    "ArgumentError",
     "Camera",
     "Cancel",
     "Cancelled",
@@ -57,6 +60,7 @@ __all__ = [
     "Geometry",
     "GeometryError",
     "HostMemoryError",
+    "LayersError",
     "Light",
     "LightmeshError",
     "Material",

@@ -1,12 +1,13 @@
 """The compiled module: everything that `lightmesh` exports comes from here, but for exceptions and helpers of progress bars."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, final
+from typing import IO, Literal, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 from typing_extensions import Self, Unpack
 
+from ._info import DeviceInfo, FrameStats, SceneInfo
 from .typing import Color, Falloff, FilmSettings, ImageSettings, Instances, OpenSettings, Path, ProgressCallback, SaveSettings, Vector, WrapMode
 
 __all__ = [
@@ -38,7 +39,7 @@ class Texture:
 
     `pixels` has shape (H, W, 3) or (H, W, 4), `uint8`, row 0 at the top: colours as sRGB, data (normals, roughness) as they are. `wrap`
     says how it goes on beyond its edges, across and down. `transform`, shape (2, 3), takes the texture coordinates of vertices to those
-    of the image, whose origin is the upper left corner.
+    of the image, whose origin is the upper left corner. `name` is for display.
     """
 
     def __new__(
@@ -57,13 +58,19 @@ class Texture:
         """As it was given; may be empty."""
     def placed(self, *, wrap: WrapMode | tuple[WrapMode, WrapMode] | None = None, transform: ArrayLike | None = None) -> Texture:
         """The same image, placed otherwise; nothing is copied."""
+    def __copy__(self) -> Texture: ...
+    def __deepcopy__(self, _memo: object) -> Texture: ...
 
 @final
 class Material:
     """What a surface reflects, emits and lets through.
 
     The constructor makes matt surfaces and mirrors of formula (1): `color` is k_d (and k_a), `specular` k_s with the Phong exponent
-    `shininess`. `Material.principled` is for everything that is described by metallic and roughness.
+    `shininess`. `Material.principled` is for everything that is described by metallic and roughness. Both have what follows.
+
+    `emission` is the radiance that it emits. `texture` tints `color`, `emission_texture` tints `emission`, and `normal_texture` turns normals, by slopes
+    times `normal_scale`. `opacity` is the share of the light that it stops, a `catcher` shows only the shadows on it, and `name` is what
+    `Frame.material_ids` call it.
     """
 
     def __new__(
@@ -107,11 +114,15 @@ class Material:
 
         `texture` tints `color`; its alpha counts with `alpha_mode` "mask" (what is below `alpha_cutoff` is not there) and "blend".
         `metallic_roughness_texture` has roughness in its green and metallic in its blue channel, which are multiplied by the factors.
-        `transmission` is the share of what is not metal that goes through as through glass of index `ior`, straight on if `thin`.
+        `transmission` is the share of what is not metal that goes through as through glass of index `ior`, straight on if `thin`. `metallic` is the share
+        of metal, `roughness` that of its facets, `specular` and `specular_tint` are strength and colour of what is reflected by what is not metal, and
+        `alpha` is the opacity.
         """
     @property
     def name(self) -> str:
         """As it was given; may be empty."""
+    def __copy__(self) -> Material: ...
+    def __deepcopy__(self, _memo: object) -> Material: ...
 
 @final
 class Geometry:
@@ -135,9 +146,9 @@ class Geometry:
 
         `vertices`: (V, 3) `float32` or `float64`, scene units. `triangles`: (T, 3) indices of vertices, counterclockwise seen from the front.
         `normals`: (V, 3), need not be of unit length; `None`: flat. `uvs`: (V, 2), origin in the upper left corner of the image, as in glTF.
-        `colors`: (V, 3), linear, tint the material. `material` is that of all triangles; or `materials` is a list, and
-        `material_indices`, (T,), says which each triangle has. `transforms`: (4, 4), or (N, 4, 4) for N places, in which the object
-        is stored once; they are applied to column vectors.
+        `colors`: (V, 3), linear, tint the material; those of `uint8` are shares of 255. `material` is that of all triangles; or `materials` is a list,
+        and `material_indices`, (T,), says which each triangle has. `transforms`: (4, 4), or (N, 4, 4) for N places, in which the object
+        is stored once; they are applied to column vectors, and end in the row 0, 0, 0, 1. `name` is that of the object.
 
         Raises `GeometryError` for indices out of range and lengths that do not match.
         """
@@ -151,12 +162,15 @@ class Geometry:
     def triangle_count(self) -> int:
         """In all places together."""
     def placed(self, transforms: ArrayLike, *, name: str | None = None) -> Geometry:
-        """The same object in other places; its arrays are shared."""
+        """The same object in other places, which `transforms` say, perhaps with another `name`; its arrays are shared."""
+    def __copy__(self) -> Geometry: ...
+    def __deepcopy__(self, _memo: object) -> Geometry: ...
 
 @final
 class Light:
     """A light. With `falloff` "none", 1 fully lights a white surface that faces it, at any distance; with "inverse-square",
-    `intensity` is in candela (of a directional light in lux): a white surface that faces it at distance d shows I / (π d²), or I / π."""
+    `intensity` is in candela (of a directional light in lux): a white surface that faces it at distance d shows I / (π d²), or I / π.
+    `position` is its centre and `direction` the way that its light goes, in world coordinates; `name` is what files call it."""
 
     @staticmethod
     def point(position: Vector, *, spread: float = 0.0, intensity: Color = 1.0, falloff: Falloff = "none", name: str = "") -> Light:
@@ -180,7 +194,7 @@ class Light:
         in degrees."""
     @staticmethod
     def sphere(position: Vector, radius: float, *, intensity: Color = 1.0, falloff: Falloff = "none", name: str = "") -> Light:
-        """Light from a ball."""
+        """Light from a ball of this `radius`."""
     @staticmethod
     def disk(
         position: Vector,
@@ -192,7 +206,7 @@ class Light:
         falloff: Falloff = "none",
         name: str = "",
     ) -> Light:
-        """A flat round light. It shines like a surface: along `normal` with `intensity`, aside with the cosine. Not `one_sided`: evenly to all
+        """A flat round light of this `radius`. It shines like a surface: along `normal` with `intensity`, aside with the cosine. Not `one_sided`: evenly to all
         sides."""
     @staticmethod
     def rectangle(
@@ -229,12 +243,15 @@ class Light:
         self, *, position: Vector | None = None, direction: Vector | None = None, intensity: Color | None = None, name: str | None = None
     ) -> Light:
         """The same light elsewhere, or of other strength."""
+    def __copy__(self) -> Light: ...
+    def __deepcopy__(self, _memo: object) -> Light: ...
 
 @final
 class Camera:
     """A camera at `position` that looks at `target`, or along `direction`. `vfov` or `hfov` is the full vertical or horizontal field of view,
     degrees (45° vertical if none is given); `height` in their place makes it orthographic: the image is as high in scene units. `shift` moves
-    the image, to the right and up, by shares of its height, as a shifted lens does: parallels stay parallel."""
+    the image, to the right and up, by shares of its height, as a shifted lens does: parallels stay parallel. `up` is what is up in the image, and
+    `name` what `camera_name` calls it."""
 
     def __new__(
         cls,
@@ -261,22 +278,27 @@ class Camera:
     @property
     def up(self) -> tuple[float, float, float]:
         """What is up in the image."""
+    def __copy__(self) -> Camera: ...
+    def __deepcopy__(self, _memo: object) -> Camera: ...
 
 @final
 class Environment:
-    """What surrounds a scene: an equirectangular panorama of linear radiance, (H, W, 3) `float32`, straight up in its first row, with
+    """What surrounds a scene: `pixels` are an equirectangular panorama of linear radiance, (H, W, 3) `float32`, straight up in its first row, with
     the north in its middle: -Z if `up` is "y", +Y if it is "z". East, +X, is to its right. `rotation` turns it clockwise as seen from above,
-    degrees; `strength` multiplies it. If it shows a sun, that becomes a light, and so do other regions that are much brighter than the rest."""
+    degrees; `strength` multiplies it. If it shows a sun, that becomes a light, and so do other regions that are much brighter than the rest,
+    unless `find_sun` is off. `name` is for display."""
 
     def __new__(
         cls, pixels: ArrayLike, *, up: Literal["y", "z"] = "y", rotation: float = 0.0, strength: float = 1.0, find_sun: bool = True, name: str = ""
     ) -> Self: ...
     @staticmethod
     def open(path: Path, *, up: Literal["y", "z"] = "y", rotation: float = 0.0, strength: float = 1.0) -> Environment:
-        """Reads an .hdr or .exr file."""
+        """Reads an .hdr or .exr file, `path`."""
     @property
     def size(self) -> tuple[int, int]:
         """Width and height, pixels."""
+    def __copy__(self) -> Environment: ...
+    def __deepcopy__(self, _memo: object) -> Environment: ...
 
 @final
 class Scene:
@@ -287,12 +309,15 @@ class Scene:
     says whether objects in many places are stored once ("always"), copied ("never"), or stored once if they have many triangles in all
     ("auto"). Surfaces that emit get lights, `lamps`, as those of files have; in a frame they come after `lights`. What had to be
     corrected is a `SceneWarning`.
+
+    `geometry` is one object or a sequence of them, `camera` the view of it, `environment` what surrounds it, `ambient` constant light from everywhere,
+    `background` what is seen where nothing is, and `name` is for display.
     """
 
     def __new__(
         cls,
         geometry: Geometry | Sequence[Geometry],
-        lights: Sequence[Light] | None = None,
+        lights: Light | Sequence[Light] | None = None,
         camera: Camera | None = None,
         *,
         environment: Environment | None = None,
@@ -304,18 +329,18 @@ class Scene:
     ) -> Self: ...
     @staticmethod
     def open(path: Path, **settings: Unpack[OpenSettings]) -> Scene:
-        """Reads a .toml, .obj, .gltf, .glb, .ply or .stl file. Raises `SceneError`."""
+        """Reads `path`, a .toml, .obj, .gltf, .glb, .ply or .stl file. Raises `SceneError`, or `HostMemoryError` if it needs more memory than there is."""
     @staticmethod
     def builtin(name: str) -> Scene:
-        """A built-in scene: "gazebo", "childpark", "garden", also with options, as in "garden?lights=3"."""
+        """A built-in scene by `name`: "gazebo", "childpark", "garden", also with options, as in "garden?lights=3"."""
     @property
     def lights(self) -> list[Light]:
-        """All lights; set a list to change them."""
+        """All lights; set a list, or one, to change them. The list is a copy, and cannot be changed itself."""
     @lights.setter
-    def lights(self, lights: Sequence[Light]) -> None: ...
+    def lights(self, lights: Light | Sequence[Light]) -> None: ...
     @property
     def cameras(self) -> list[Camera]:
-        """All cameras; set a list to change them."""
+        """All cameras; set a list to change them. The list is a copy, and cannot be changed itself."""
     @cameras.setter
     def cameras(self, cameras: Sequence[Camera]) -> None: ...
     @property
@@ -348,8 +373,34 @@ class Scene:
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
         """Lowest and highest corner, world coordinates; `None` without triangles."""
     @property
+    def origin(self) -> tuple[float, float, float]:
+        """The place of vertices with the coordinates 0, 0, 0; world coordinates."""
+    @property
+    def vertices(self) -> NDArray[np.float32]:
+        """(V, 3): the vertices, relative to `origin`. Like all arrays of a scene it is a view that cannot be written, and lives as long as it is
+        used. Of objects that are stored once for many places, see `instances`, vertices are in coordinates of their own."""
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(T, 3): the vertices of each triangle, counterclockwise seen from the front."""
+    @property
+    def normals(self) -> NDArray[np.float32] | None:
+        """(V, 3): the shading normals of vertices, of unit length, or 0 where triangles are flat; `None` if all are."""
+    @property
+    def uvs(self) -> NDArray[np.float32] | None:
+        """(V, 2): texture coordinates, origin in the upper left corner of the image; `None` if there are none."""
+    @property
+    def colors(self) -> NDArray[np.float32] | None:
+        """(V, 3): linear colours that tint the materials; `None` if there are none."""
+    @property
+    def material_indices(self) -> NDArray[np.uint32]:
+        """(T,): the material of each triangle, an index of `materials`."""
+    @property
+    def object_ranges(self) -> NDArray[np.uint32]:
+        """(R, 3): which triangles belong to which object. A row is an index of `objects`, the first triangle, and the one after the last. An object
+        can have several rows."""
+    @property
     def objects(self) -> list[str]:
-        """Names of the objects, in the order of `Frame.ids`."""
+        """Names of the objects, in the order of `Frame.ids`; `object_ranges` has their triangles."""
     @property
     def materials(self) -> list[str]:
         """Names of the materials, in the order of `Frame.material_ids`."""
@@ -360,11 +411,13 @@ class Scene:
     def duration(self) -> float | None:
         """Seconds of its animation; `None` if nothing moves."""
     def at(self, time: float) -> Scene:
-        """The scene at a moment of its animation, in seconds."""
+        """The scene at a moment of its animation: `time` is in seconds."""
     def with_geometry(self, geometry: Geometry | Sequence[Geometry], *, instances: Instances = "auto") -> Scene:
-        """Other geometry with the same lights, cameras and surroundings."""
-    def info(self) -> dict[str, Any]:
+        """Other `geometry` with the same lights, cameras and surroundings; `instances` as in the constructor."""
+    def info(self) -> SceneInfo:
         """What `lightmesh info` says of it."""
+    def __copy__(self) -> Scene: ...
+    def __deepcopy__(self, _memo: object) -> Scene: ...
 
 @final
 class PreparedScene:
@@ -376,21 +429,23 @@ class PreparedScene:
     @property
     def memory(self) -> int:
         """Bytes that the structure takes."""
-    def with_lights(self, lights: Sequence[Light]) -> PreparedScene:
-        """The same with other lights; nothing is rebuilt."""
+    def with_lights(self, lights: Light | Sequence[Light]) -> PreparedScene:
+        """The same with other `lights`, one or a sequence; nothing is rebuilt."""
     def with_camera(self, camera: Camera) -> PreparedScene:
-        """The same with another camera; nothing is rebuilt."""
+        """The same with another `camera`; nothing is rebuilt."""
 
 @final
 class MeshCache:
-    """What light points see and surfaces gather, kept from image to image. Images are the same without it."""
+    """What light points see and surfaces gather, kept from image to image. Images are the same without it. A process that is forked begins with
+    an empty one."""
 
     def __new__(cls) -> Self: ...
     @staticmethod
     def load(path: Path, prepared: PreparedScene) -> MeshCache:
-        """Reads a file of `save`, or of `--mesh-file`. Raises `MeshFileError`."""
+        """Reads the file `path` of `save`, or of `--mesh-file`, for a `prepared` scene. Raises `MeshFileError`."""
     def save(self, path: Path, prepared: PreparedScene) -> int:
-        """Writes light points and gathered light, and returns the number of light points; if nothing is kept, no file is written."""
+        """Writes light points and gathered light of a `prepared` scene to `path`, and returns the number of light points; if nothing is kept, no file is
+        written."""
     def clear(self) -> None:
         """Forgets everything."""
     def __len__(self) -> int:
@@ -402,11 +457,11 @@ class MeshCache:
 
 @final
 class Progress:
-    """How far a render has come."""
+    """How far a render, or the whole of a film, has come."""
 
     @property
     def done(self) -> float:
-        """From 0 to 1."""
+        """The share of all work that is done, from 0 to 1; it never falls, and is 1 in the end."""
     @property
     def seconds(self) -> float:
         """Since the beginning."""
@@ -488,7 +543,7 @@ class Frame:
     def material_ids(self) -> Mattes:
         """The materials that pixels see."""
     @property
-    def stats(self) -> dict[str, Any]:
+    def stats(self) -> FrameStats:
         """Counts, seconds, memory and settings: what `--stats` writes."""
     @property
     def exposure(self) -> float:
@@ -505,18 +560,19 @@ class Frame:
     @property
     def notes(self) -> list[str]:
         """What was chosen automatically."""
-    def save(self, path: Path, **settings: Unpack[SaveSettings]) -> None:
-        """Writes a bmp, png, exr or jpg file; the same bytes as the command line. Raises `SaveError`; no partial file is left."""
-    def save_layers(self, path: Path, **settings: Unpack[SaveSettings]) -> None:
-        """Writes all layers as a multilayer exr file."""
+    def save(self, path: Path | IO[bytes], **settings: Unpack[SaveSettings]) -> None:
+        """Writes a bmp, png, exr or jpg file; the same bytes as the command line. `path` may also be a file that is open for writing bytes: then `format` is
+        needed. Raises `SaveError`; no partial file is left."""
+    def save_layers(self, path: Path | IO[bytes], **settings: Unpack[SaveSettings]) -> None:
+        """Writes all layers as a multilayer exr file. `path` may also be a file that is open for writing bytes."""
     def to_png(self, **settings: Unpack[SaveSettings]) -> bytes:
         """A png file, in memory."""
     def _repr_png_(self) -> bytes: ...
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[np.float32]: ...
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[np.float32]: ...
 
 @final
 class Film:
-    """The frames of a film: iterate over it. With an output, each frame is written before it is returned."""
+    """The frames of a film: iterate over it. With an output, each frame is written before it is returned. It goes on in the process that began it only."""
 
     def __iter__(self) -> Self: ...
     def __next__(self) -> Frame: ...
@@ -529,17 +585,22 @@ class SunHours:
 
     @property
     def hours(self) -> NDArray[np.float32]:
-        """(H, W): hours of direct sun; 0 where no surface is seen."""
+        """(H, W): hours of direct sun; 0 where there is none, and where no surface is seen: `mask` tells which."""
+    @property
+    def mask(self) -> NDArray[np.bool_]:
+        """(H, W): whether a surface is seen. It is the alpha of exr files."""
     @property
     def table(self) -> str:
         """Hours by object, as the text of a csv file."""
-    def save(self, path: Path) -> None:
-        """Writes an exr with the hours, a png with a legend, or a csv with a row for each object. Raises `SaveError`."""
+    def save(self, path: Path | IO[bytes], *, format: Literal["exr", "png", "csv"] | None = None) -> None:
+        """Writes an exr with the hours, a png with a legend, or a csv with a row for each object. `path` may also be a file that is open for writing
+        bytes: then `format`, "exr", "png" or "csv", is needed. Raises `SaveError`."""
 
 @final
 class Renderer:
-    """Renders scenes on one device: "auto", "cpu", "cuda" or "cuda:1". Can be used by several threads at once; the interpreter is free while it
-    works. Raises `DeviceError` if the device cannot be used."""
+    """Renders scenes on one `device`: "auto", "cpu", "cuda" or "cuda:1", with so many `threads` of the CPU, or all. Can be used by several threads at
+    once; the interpreter is free while it works. A process that is forked uses it with threads of its own, if the device is the CPU. Raises
+    `DeviceError` if the device cannot be used."""
 
     def __new__(cls, device: str = "auto", *, threads: int | None = None) -> Self: ...
     @property
@@ -553,21 +614,25 @@ class Renderer:
         scene: Scene,
         *,
         before: PreparedScene | None = None,
+        lights: Light | Sequence[Light] | None = None,
         progress: ProgressCallback | None = None,
         cancel: Cancel | None = None,
         **settings: Unpack[ImageSettings],
     ) -> PreparedScene:
-        """Builds the acceleration structure. `before` is the same scene at another moment: what has not moved is kept."""
+        """Builds the acceleration structure of `scene`. `before` is the same scene at another moment: what has not moved is kept. `lights`, one or a
+        sequence, stand in for the scene's. `progress` is called now and then, and `cancel` stops it."""
     def render(
         self,
         scene: Scene | PreparedScene,
         *,
         cache: MeshCache | None = None,
+        lights: Light | Sequence[Light] | None = None,
         progress: ProgressCallback | None = None,
         cancel: Cancel | None = None,
         **settings: Unpack[ImageSettings],
     ) -> Frame:
-        """Renders an image. The structure of the scene rendered last is kept: other lights and cameras cost no building."""
+        """Renders an image of `scene`. The structure of the scene rendered last is kept: other lights and cameras cost no building. `lights`, one or a
+        sequence, stand in for the scene's. `cache` keeps what light points see. `progress` is called now and then, and `cancel` stops it."""
     def film(
         self,
         scene: Scene | Path,
@@ -576,13 +641,15 @@ class Renderer:
         layers_file: Path | None = None,
         stats: Path | None = None,
         mesh_file: Path | None = None,
+        lights: Light | Sequence[Light] | None = None,
         progress: ProgressCallback | None = None,
         cancel: Cancel | None = None,
         **settings: Unpack[FilmSettings],
     ) -> Film:
-        """The frames of a film: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, and `len` says how many are left.
-        With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and `mesh_file`, each is written before it is returned; `resume`
-        goes on with a film of which some frames are there."""
+        """The frames of a film of `scene`: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, and `len` says how many are
+        left. With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and `mesh_file`, each is written before it is returned; `resume`
+        goes on with a film of which some frames are there. `lights`, one or a sequence, stand in for the scene's. `progress` is called now and then
+        with the share of the whole film, and `cancel` stops it."""
     def sun_hours(
         self,
         scene: Scene | Path,
@@ -591,33 +658,35 @@ class Renderer:
         cancel: Cancel | None = None,
         **settings: Unpack[FilmSettings],
     ) -> SunHours:
-        """The hours of direct sun on what an image shows, on a day at a place that `sun` says."""
+        """The hours of direct sun on what an image of `scene` shows, on a day at a place that `sun` says. `progress` is called now and then, and `cancel`
+        stops it."""
     def visibility(
         self,
         points: ArrayLike,
         normals: ArrayLike,
         scene: Scene | PreparedScene,
-        lights: Sequence[Light] | None = None,
+        lights: Light | Sequence[Light] | None = None,
         *,
         progress: ProgressCallback | None = None,
         cancel: Cancel | None = None,
         **settings: Unpack[ImageSettings],
     ) -> NDArray[np.float32]:
-        """The visible share of each light, (N, L), at surface points (N, 3) with these normals (N, 3), world coordinates: to bake vertex colours and
-        lightmaps. `lights` stand in for the scene's. What lies behind a surface is dark."""
+        """The visible share of each light, (N, L), at surface `points` (N, 3) of `scene` with these `normals` (N, 3), world coordinates: to bake vertex
+        colours and lightmaps. `lights`, one or a sequence, stand in for the scene's. What lies behind a surface is dark. `progress` is called now and
+        then, and `cancel` stops it."""
 
 def visibility(
     points: ArrayLike,
     normals: ArrayLike,
     scene: Scene | PreparedScene,
-    lights: Sequence[Light] | None = None,
+    lights: Light | Sequence[Light] | None = None,
     *,
     device: str = "auto",
     **settings: Unpack[ImageSettings],
 ) -> NDArray[np.float32]:
-    """`Renderer.visibility` on a renderer of its own."""
+    """`Renderer.visibility` of `points` with `normals` in `scene`, lit by `lights`, on a renderer of its own on `device`."""
 
-def devices() -> list[dict[str, Any]]:
+def devices() -> list[DeviceInfo]:
     """What `lightmesh info --devices` lists."""
 
 def command(arguments: Sequence[str]) -> int:

@@ -8,7 +8,7 @@ from typing import Literal, TypedDict, Union
 
 from numpy.typing import ArrayLike
 
-from ._lightmesh import Camera, Environment
+from ._lightmesh import Camera, Environment, Light
 
 _Path = Union[str, PathLike[str]]
 _Color = Union[float, ArrayLike]
@@ -80,7 +80,7 @@ class _Image(TypedDict, total=False):
     """Use the scene's camera of this name [default: the first]"""
     up: Literal["auto", "y", "z"] | None
     """Set the up axis for camera, and for scenes without a camera [default: auto]"""
-    light: str | Sequence[str] | None
+    light: Light | str | Sequence[Light] | Sequence[str] | None
     """Replace the scene's lights: position, intensity (one number or r,g,b) and radius, as in '3,8,2;0.9;0.25'; repeatable [default: the scene's, else a studio]"""
     falloff: Literal["none", "inverse-square"] | None
     """Set how the lights of light fall off with distance [default: none]"""

@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 
 use lightmesh_files::check_writable;
-use lightmesh_scene::{SkyKind, SunPosition};
+use lightmesh_scene::{SkyKind, SunPosition, parse_by_name};
 
 use crate::error::{OutputError, RequestError};
 use crate::files::{Outputs, PictureFiles, hours_of_sun, input, save_options};
@@ -65,6 +65,22 @@ pub enum HoursFormat {
     Csv,
 }
 
+impl HoursFormat {
+    /// All of them.
+    pub const ALL: &'static [HoursFormat] = &[HoursFormat::Exr, HoursFormat::Png, HoursFormat::Csv];
+
+    /// Its name, which is the extension of its files.
+    pub fn name(self) -> &'static str {
+        match self {
+            HoursFormat::Exr => "exr",
+            HoursFormat::Png => "png",
+            HoursFormat::Csv => "csv",
+        }
+    }
+}
+
+parse_by_name!(HoursFormat, "format of hours");
+
 impl SunStudy {
     /// The study that is asked for, if one is. Fails if there is no sun, or a file cannot be written.
     pub(crate) fn new(order: &Order) -> Result<Option<SunStudy>, RequestError> {
@@ -73,7 +89,7 @@ impl SunStudy {
         if !matches!(sky.sky.kind, SkyKind::Clear { .. }) {
             return Err(RequestError::SunWithoutSky);
         }
-        let outputs = order.files.sun_hours.iter().map(|path| hours_file(path)).collect::<Result<_, _>>()?;
+        let outputs = order.files.sun_hours.iter().map(|path| hours_file(path, None)).collect::<Result<_, _>>()?;
         SunStudy::of(spec, sky, outputs).map(Some)
     }
 
@@ -132,14 +148,10 @@ impl SunStudy {
 }
 
 /// Checks that a file for hours can be written.
-pub(super) fn hours_file(path: &Path) -> Result<HoursFile, RequestError> {
+pub(super) fn hours_file(path: &Path, format: Option<HoursFormat>) -> Result<HoursFile, RequestError> {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    let format = match extension.to_ascii_lowercase().as_str() {
-        "exr" => HoursFormat::Exr,
-        "png" => HoursFormat::Png,
-        "csv" => HoursFormat::Csv,
-        _ => return Err(RequestError::HoursFormat { path: path.to_owned() }),
-    };
+    let by_extension = || extension.to_ascii_lowercase().parse::<HoursFormat>().ok();
+    let format = format.or_else(by_extension).ok_or_else(|| RequestError::HoursFormat { path: path.to_owned() })?;
     check_writable(path).map_err(OutputError::from)?;
     Ok(HoursFile { path: path.to_owned(), format })
 }

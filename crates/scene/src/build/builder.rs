@@ -8,7 +8,7 @@ use std::ops::Range;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
 use super::{
-    geometry_check::{GeometryError, check_room},
+    geometry_check::{GeometryError, check_affine, check_room},
     loaded_mesh::LoadedMesh,
     mesh_part::{MeshPart, Room},
     sanitize::{clamp_reflectance, keep_finite, unseen},
@@ -146,7 +146,7 @@ impl SceneBuilder {
     ///
     /// # Errors
     ///
-    /// [`GeometryError`] if an index is out of range or lengths do not match; then nothing was added.
+    /// [`GeometryError`] if an index is out of range, lengths do not match, or the transform is not affine; then nothing was added.
     pub fn add<P: Position>(
         &mut self,
         part: MeshPart<P>,
@@ -154,6 +154,7 @@ impl SceneBuilder {
         material: impl Fn(usize) -> u32,
     ) -> Result<(), GeometryError> {
         part.check()?;
+        check_affine(std::slice::from_ref(transform))?;
         check_room(self.vertex_count() + part.positions.len(), self.triangle_count() + part.triangles.len())?;
         self.append(part, transform, material);
         Ok(())
@@ -176,6 +177,7 @@ impl SceneBuilder {
         if let Some(place) = places.iter().position(|place| !Affine::holds(place)) {
             return Err(GeometryError::Place { place });
         }
+        check_affine(places)?;
         let count = part.triangles.len();
         let all = self.shapes.triangles + count.saturating_mul(places.len());
         check_room(self.vertex_count() + part.positions.len(), self.triangle_count() + 2 * count)?;

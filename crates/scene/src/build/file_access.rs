@@ -45,6 +45,19 @@ impl FileAccess {
         read_stream(source, self.budget).map_err(|error| unreadable(&self.scene, error))
     }
 
+    /// Fails if there is no memory for what the bytes of a model become, which is about as large, while they are read.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::Memory`].
+    pub(crate) fn check_content(&self, path: &Path, bytes: &[u8]) -> Result<(), LoadError> {
+        self.budget.check(bytes.len() as u64).map_err(|short| LoadError::Memory {
+            path: path.to_owned(),
+            what: "the content of the file beside the file itself".to_owned(),
+            short,
+        })
+    }
+
     /// The path that `source`, one of the scene's files, refers to as `name`: relative to the file's own folder, with either
     /// kind of slash.
     ///

@@ -1,6 +1,7 @@
 //! Consistency checks of geometry: every index is in range, and lists that belong together have the same length. Loaders guarantee
 //! this; geometry built by hand is checked here, when it is added and when it is prepared for ray tracing.
 
+use glam::{DMat4, DVec4};
 use rayon::prelude::*;
 
 use super::mesh_part::MeshPart;
@@ -71,6 +72,16 @@ pub enum GeometryError {
         /// Number of the place.
         place: usize,
     },
+    /// A map is not affine: what its last row says would be lost.
+    #[error(
+        "the last row of transform {place} is {row} and not 0, 0, 0, 1: give an affine map for column vectors, with the translation in the last column"
+    )]
+    NotAffine {
+        /// Number of the place.
+        place: usize,
+        /// The last row.
+        row: String,
+    },
     /// Shapes that are placed many times are not the last of all triangles, or not there.
     #[error("shapes in many places have to be the last triangles of a mesh: add them behind all others")]
     ShapesNotLast,
@@ -82,6 +93,26 @@ pub enum GeometryError {
         /// Number of triangles.
         triangles: usize,
     },
+}
+
+/// Rows of affine maps end in 0, 0, 0, 1, but for rounding in their products and inverses.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether nothing is lost if the last row of a map is taken for 0, 0, 0, 1.
+pub(crate) fn is_affine(map: &DMat4) -> bool {
+    let largest = map.to_cols_array().iter().fold(1.0_f64, |largest, number| largest.max(number.abs()));
+    (map.row(3) - DVec4::W).abs().max_element() <= ROUNDING * largest
+}
+
+/// Fails if a map is not affine.
+pub(super) fn check_affine(places: &[DMat4]) -> Result<(), GeometryError> {
+    match places.iter().position(|place| !is_affine(place)) {
+        None => Ok(()),
+        Some(place) => {
+            let [a, b, c, d] = places[place].row(3).to_array();
+            Err(GeometryError::NotAffine { place, row: format!("{a}, {b}, {c}, {d}") })
+        }
+    }
 }
 
 impl Geometry {

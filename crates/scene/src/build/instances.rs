@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DMat4, Vec2, Vec3};
 
-use super::geometry_check::{check_instances, check_room};
+use super::geometry_check::{check_affine, check_instances, check_room};
 use crate::model::instances::{Affine, MAX_INSTANCED};
 use crate::{FIRST_INSTANCED, GeometryError, Mesh, UNNAMED};
 
@@ -14,12 +14,13 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// [`GeometryError::Place`] if a map cannot be inverted, or distorts too much; [`GeometryError::ShapesNotLast`];
+    /// [`GeometryError::Place`] if a map cannot be inverted, or distorts too much; [`GeometryError::NotAffine`]; [`GeometryError::ShapesNotLast`];
     /// [`GeometryError::TooLarge`].
     pub fn add_instances(&mut self, shape: &Mesh, places: &[DMat4], object: &str) -> Result<(), GeometryError> {
         if let Some(place) = places.iter().position(|place| !Affine::holds(place)) {
             return Err(GeometryError::Place { place });
         }
+        check_affine(places)?;
         check_instances(self)?;
         let flat = shape.flattened()?;
         if flat.triangles.is_empty() || places.is_empty() {

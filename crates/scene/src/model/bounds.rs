@@ -1,9 +1,10 @@
 //! Axis-aligned boxes.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
     /// Lowest corner.
     pub min: Vec3,

@@ -1,9 +1,10 @@
 //! Cameras: the viewpoints of images.
 
 use glam::{DMat4, DVec3, DVec4, Quat, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// The field of view of a perspective camera. The other angle follows from the image's aspect ratio, because pixels are square.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fov {
     /// Full vertical field of view, degrees.
     Vertical(f32),
@@ -27,7 +28,7 @@ impl Fov {
 }
 
 /// How a camera maps directions or points to the image.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Projection {
     /// All rays leave the camera's position.
     Perspective(Fov),
@@ -42,7 +43,7 @@ pub enum Projection {
 pub const LARGEST_SHIFT: f32 = 1000.0;
 
 /// A camera in the scene's local frame (see [`Geometry::origin`](crate::Geometry::origin)).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Camera {
     /// Name in the file; empty if it has none.

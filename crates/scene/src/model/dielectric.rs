@@ -1,10 +1,11 @@
 //! Dielectrics: glass, water and other bodies that light goes through, bent and in part reflected at their surface.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// The boundary of a transparent body. Reflection follows Fresnel's equations, the way on Snell's law; how much goes on besides is said by
 /// the [opacity](crate::Opacity), which must let light through.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Dielectric {
     /// Index of refraction, relative to what is around.

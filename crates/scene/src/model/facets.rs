@@ -1,11 +1,13 @@
 //! Facets: rough surfaces as glTF describes them, metals and others.
 
+use serde::{Deserialize, Serialize};
+
 /// How rough a surface is, and how metallic. With facets, the coefficients of a [`Material`](crate::Material) are those of glTF's
 /// metallic-roughness model: `kd` is the base colour, and `ks` what the layer above it reflects at normal incidence, 0.04 for most matter
 /// that is no metal. The exponent of the Phong lobe does not count.
 ///
 /// The lobe is that of Trowbridge and Reitz, GGX (Walter et al. 2007), with a width of the square of the roughness.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Facets {
     /// From 0, a mirror, to 1.

@@ -1,12 +1,13 @@
 //! The surfaces that rays can hit: triangles with their materials and textures.
 
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::{Material, Mesh, Textures};
 
 /// The surfaces of a scene, in one local frame. [`Scene`](crate::Scene) shares them behind an `Arc`: moving a light or a camera does
 /// not change them, and what a renderer has built over them stays valid.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Geometry {
     /// World position of the local frame's origin. All `f32` positions, including those of lights and cameras, are relative to it.
     pub origin: DVec3,

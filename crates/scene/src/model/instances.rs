@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use glam::{DAffine3, DMat3, DMat4, DVec3, Vec3};
 use lightmesh_memory::Budget;
+use serde::{Deserialize, Serialize};
 
 use super::bounds::Bounds;
 use crate::parse_by_name;
@@ -80,7 +81,7 @@ impl Instancing {
 parse_by_name!(Instancing, "instancing");
 
 /// An affine map in single precision: three rows of a matrix, each with its translation.
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable, Serialize, Deserialize)]
 #[repr(C)]
 pub struct Affine {
     /// Row by row.
@@ -152,7 +153,7 @@ impl Affine {
 }
 
 /// A shape at one of its places.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instance {
     /// The stored triangles of its shape.
     pub triangles: Range<u32>,
@@ -169,7 +170,7 @@ pub struct Instance {
 }
 
 /// The instances of a mesh.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Instances {
     /// Stored triangles of all shapes.
     pub(crate) shapes: Range<u32>,

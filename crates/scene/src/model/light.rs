@@ -3,11 +3,12 @@
 use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use crate::parse_by_name;
 
 /// How distance attenuates a light, and with it the unit of [`Light::intensity`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Falloff {
     /// The thesis's lights: intensity 1 fully lights a white surface that faces it, at any distance.
     #[default]
@@ -44,7 +45,7 @@ parse_by_name!(Falloff, "falloff");
 pub(crate) const LARGEST_ANGLE: f64 = 179.0;
 
 /// The shape of a light. Positions and lengths are in the scene's local frame and units.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum LightKind {
     /// Light from one point.
     Point {
@@ -104,7 +105,7 @@ pub enum LightKind {
 }
 
 /// One light.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Light {
     /// Name in the file; empty if it has none.

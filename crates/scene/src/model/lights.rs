@@ -5,6 +5,7 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use super::{
     bounds::Bounds,
@@ -23,7 +24,7 @@ fn is_disc(direction: Vec3, toward: Vec3) -> bool {
 }
 
 /// The lights of a scene, and the ambient light. Dereferences to the list of lights.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Lights {
     /// The lights; may be empty.

@@ -1,6 +1,7 @@
 //! Materials: the coefficients of the shading model, formula (1).
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use crate::{Dielectric, Facets, NormalMap, Opacity, TextureUse};
 
@@ -9,7 +10,7 @@ use crate::{Dielectric, Facets, NormalMap, Opacity, TextureUse};
 /// If a texture or vertex colours give a surface point a tint t — their product, white if there are neither — its coefficients
 /// are `ka` t, `kd` t and `ks` + `ks_tinted` t, and it emits `emission` e + `emission_tinted` t, where e is the colour of the
 /// [emission texture](Material::emission_texture), white without one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Material {
     /// Name in the file; empty if it has none.

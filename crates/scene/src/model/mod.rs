@@ -16,6 +16,7 @@ mod mesh;
 mod names;
 mod objects;
 mod opacity;
+pub mod packed;
 pub(crate) mod placed;
 mod positions;
 mod scene;

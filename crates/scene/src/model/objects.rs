@@ -4,6 +4,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 /// The object of triangles that nobody named.
 pub const UNNAMED: &str = "unnamed";
 
@@ -18,7 +20,7 @@ pub const UNNAMED: &str = "unnamed";
 /// objects.begin(2, "box");
 /// assert_eq!([0, 1, 2, 9].map(|triangle| objects.name(objects.of(triangle))), ["floor", "floor", "box", "box"]);
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Objects {
     names: Vec<Arc<str>>,
     numbers: HashMap<Arc<str>, u32>,

@@ -2,11 +2,12 @@
 //! through, such as curtains and tinted glass.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use crate::{Texture, TextureUse};
 
 /// Which part of a texel is its opacity.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum OpacityChannel {
     /// Alpha.
     #[default]
@@ -64,7 +65,7 @@ impl OpacityChannel {
 }
 
 /// What an opacity below 1 means.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum OpacityMode {
     /// There is a surface where the opacity is at least the cutoff; elsewhere nothing is hit, hidden or shaded.
     Mask {
@@ -81,7 +82,7 @@ pub enum OpacityMode {
 
 /// How much of a surface is there: the product of `factor`, the texture's channel and the [opacity of vertices](crate::Mesh::opacities),
 /// all from 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Opacity {
     /// The image; without one its part is 1.

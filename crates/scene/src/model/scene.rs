@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 use super::{animation::Animation, camera::Camera, geometry::Geometry, lights::Lights};
 use crate::parse_by_name;
 
 /// The weight w of formula (3) as a function of q = distance / radius.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Weight {
     /// w = 1: the thesis.
     Constant,
@@ -46,7 +47,7 @@ impl Weight {
 parse_by_name!(Weight, "weight");
 
 /// The settings of the light mesh that a scene proposes; explicit render settings take precedence.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct LightMeshDefaults {
     /// Step h in scene units.
@@ -58,8 +59,8 @@ pub struct LightMeshDefaults {
 }
 
 /// Everything needed for rendering: geometry, lights and cameras, which change independently of each other. Cloning is cheap: the
-/// geometry is shared.
-#[derive(Clone, Debug)]
+/// geometry is shared. Serde stores the scene as it is, in the order of bytes of the machine, but not [how it moves](Scene::animation()).
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Scene {
     /// For display: the file's stem or the built-in's name.
@@ -81,6 +82,7 @@ pub struct Scene {
     /// How many vertices got a normal while the scene was read, see [`LoadOptions::smooth`](crate::LoadOptions::smooth).
     pub smooth_normals: usize,
     /// How it moves.
+    #[serde(skip)]
     pub(crate) animation: Option<Arc<Animation>>,
 }
 

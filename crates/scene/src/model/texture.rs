@@ -4,23 +4,25 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use glam::Affine2;
+use serde::{Deserialize, Serialize};
 
 /// An image in memory.
 ///
 /// Eight bits per channel: colours encoded as sRGB, or the data of a [`NormalMap`] or of
 /// [facets](crate::Material::metallic_roughness_texture); row 0 is the top, texture coordinate (0, 0) its upper left corner, as in glTF.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Texture {
     /// For display: the file's name, or its index in the file that contains it.
     pub name: String,
     /// Width and height in texels, at least 1.
     pub size: [u32; 2],
     /// Red, green, blue and alpha, row by row. Alpha counts where a material is [cut out](crate::Opacity) by it.
+    #[serde(with = "super::packed")]
     pub texels: Vec<[u8; 4]>,
 }
 
 /// The textures of a geometry: a list that clones share until one of them is changed.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Textures(Arc<Vec<Texture>>);
 
 impl Textures {
@@ -51,7 +53,7 @@ impl From<Vec<Texture>> for Textures {
 }
 
 /// How a texture continues beyond its edge, along one axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Wrap {
     /// Repeated.
     #[default]
@@ -63,7 +65,7 @@ pub enum Wrap {
 }
 
 /// A texture on a material.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TextureUse {
     /// Index of the texture in the scene.
     pub texture: u32,
@@ -84,7 +86,7 @@ impl TextureUse {
 ///
 /// Red is the direction in which the image goes on to the right, green that to its top, and blue that of the surface, as in glTF: 128 is 0
 /// and 255 is 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NormalMap {
     /// The image, and how it is placed.
     pub uses: TextureUse,

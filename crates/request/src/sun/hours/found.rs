@@ -14,12 +14,19 @@ pub struct SunHours {
     pub(super) camera: Camera,
     /// Hours by pixel; 0 where there is no surface.
     pub(super) hours: Vec<f32>,
+    /// Whether a pixel sees a surface.
+    pub(super) mask: Vec<bool>,
 }
 
 impl SunHours {
-    /// Hours of the pixels, row by row from the top; 0 where there is no surface.
+    /// Hours of the pixels, row by row from the top; 0 where there is no sun, or [no surface](SunHours::mask()).
     pub fn hours(&self) -> &[f32] {
         &self.hours
+    }
+
+    /// Whether the pixels see a surface, row by row from the top. Tables count only those that do, and exr files have it as alpha.
+    pub fn mask(&self) -> &[bool] {
+        &self.mask
     }
 
     /// Width and height in pixels.
@@ -33,6 +40,6 @@ impl SunHours {
 
     /// Whether a pixel sees a surface.
     pub(super) fn sees(&self, pixel: usize) -> bool {
-        self.layers().depth[pixel].is_finite()
+        self.mask[pixel]
     }
 }

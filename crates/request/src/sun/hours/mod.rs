@@ -20,7 +20,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::Vec3;
-use lightmesh_image::{Description, ExrOptions, Format, Frame, Layers, Output, Ready, SaveOptions};
+use lightmesh_image::{Description, EncodeError, ExrOptions, Format, Frame, Layers, Output, Ready, SaveOptions};
 use lightmesh_render::{AmbientSource, Observer, PreparedScene, RenderError, Renderer, Settings};
 use lightmesh_scene::{Light, LightError, Lights, Up};
 use rayon::prelude::*;
@@ -106,8 +106,10 @@ impl SunHours {
             seen.get_or_insert_with(|| without_light(frame));
         }
         let frame = seen.expect("a study has a moment with sun");
-        let (study, exr) = (study.clone(), ExrOptions::default());
-        Ok(SunHours { study, exr, frame, camera, hours: hours.into_iter().map(|hours| hours as f32).collect() })
+        let layers = frame.layers().expect("they were asked for");
+        let mask = layers.depth.iter().map(|depth| depth.is_finite()).collect();
+        let hours = hours.into_iter().map(|hours| hours as f32).collect();
+        Ok(SunHours { study: study.clone(), exr: ExrOptions::default(), frame, camera, hours, mask })
     }
 
     /// The hours as a picture with a legend.
@@ -120,7 +122,29 @@ impl SunHours {
     /// # Errors
     /// [`Error`]; no partial file is left.
     pub fn save(&self, path: &Path) -> Result<(), Error> {
-        Ok(publish(vec![self.file(&hours_file(path)?)?])?)
+        self.save_as(path, None)
+    }
+
+    /// The same in a format that the extension need not say.
+    ///
+    /// # Errors
+    /// As [`SunHours::save`].
+    pub fn save_as(&self, path: &Path, format: Option<HoursFormat>) -> Result<(), Error> {
+        Ok(publish(vec![self.file(&hours_file(path, format)?)?])?)
+    }
+
+    /// The bytes of a file of this format.
+    ///
+    /// # Errors
+    /// [`EncodeError`] if the format cannot store the hours.
+    pub fn encode(&self, format: HoursFormat) -> Result<Vec<u8>, EncodeError> {
+        match format {
+            HoursFormat::Exr => {
+                self.frame.encode_values(&[("hours", &self.hours), ("A", &self.alpha())], &self.exr_options())
+            }
+            HoursFormat::Png => self.picture().encode(Format::Png, &SaveOptions::default()),
+            HoursFormat::Csv => Ok(self.table().into_bytes()),
+        }
     }
 
     /// Hours by object, as text with a row for each object that is visible.
@@ -142,11 +166,19 @@ impl SunHours {
 
     /// Hours, and whether there is a surface as alpha.
     fn exr(&self, path: &Path) -> Result<Ready, Error> {
-        let seen: Vec<f32> = (0..self.hours.len()).map(|pixel| f32::from(u8::from(self.sees(pixel)))).collect();
-        let description = Description::default().with_software(concat!("Lightmesh ", env!("CARGO_PKG_VERSION")));
-        let options = SaveOptions::default().with_exr(self.exr).with_description(description);
         let output = Output::to(path).map_err(OutputError::from)?;
-        Ok(self.frame.ready_values_to(output, &[("hours", &self.hours), ("A", &seen)], &options)?)
+        let channels: [(&str, &[f32]); 2] = [("hours", &self.hours), ("A", &self.alpha())];
+        Ok(self.frame.ready_values_to(output, &channels, &self.exr_options())?)
+    }
+
+    fn exr_options(&self) -> SaveOptions {
+        let description = Description::default().with_software(concat!("Lightmesh ", env!("CARGO_PKG_VERSION")));
+        SaveOptions::default().with_exr(self.exr).with_description(description)
+    }
+
+    /// 1 where there is a surface.
+    fn alpha(&self) -> Vec<f32> {
+        self.mask.iter().map(|&sees| f32::from(u8::from(sees))).collect()
     }
 }
 

@@ -89,6 +89,31 @@ fn the_shadow_of_a_box_is_that_of_its_edges() {
 }
 
 #[test]
+fn no_sun_is_not_no_surface() {
+    let small = PLAN.replace("size = [40, 40]", "size = [6, 6]");
+    let found = hours_of(&format!("{small}{BOX}"), &study("48,0,2026-04-20Z,12:00-13:00/30m"));
+    let pixels = found.hours().iter().zip(found.mask());
+    // A quarter of the picture is the ground.
+    assert_eq!(found.mask().iter().filter(|&&sees| sees).count(), 48 * 48);
+    assert!(pixels.clone().all(|(&hours, &sees)| sees || hours == 0.0));
+    assert!(pixels.clone().any(|(&hours, &sees)| sees && hours == 0.0));
+    let alpha: Vec<f32> = found.mask().iter().map(|&sees| f32::from(u8::from(sees))).collect();
+    assert_eq!(found.alpha(), alpha);
+}
+
+#[test]
+fn bytes_are_those_of_files() {
+    let (folder, found) = (tempfile::tempdir().unwrap(), hours_of(PLAN, &study("48,0,2026-04-20Z,12:00-13:00/30m")));
+    for &format in HoursFormat::ALL {
+        let path = folder.path().join("file").with_extension(format.name());
+        found.save(&path).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), found.encode(format).unwrap(), "{format}");
+        found.save_as(&folder.path().join("other"), Some(format)).unwrap();
+        assert_eq!(std::fs::read(folder.path().join("other")).unwrap(), found.encode(format).unwrap(), "{format}");
+    }
+}
+
+#[test]
 fn the_table_sums_what_is_seen() {
     let found = hours_of(&format!("{PLAN}{BOX}"), &study("48,0,2026-04-20Z,07:00-17:00/1h"));
     let table = table::table(&found);

@@ -9,6 +9,7 @@ use super::{
     document::{Document, Node},
 };
 use crate::build::draft::Draft;
+use crate::build::geometry_check::is_affine;
 use crate::model::animation::rig;
 use crate::{LoadError, Place};
 
@@ -47,7 +48,16 @@ pub(super) fn placed<'a>(
         if std::mem::replace(&mut seen[index as usize], true) {
             return Err(no_tree(path, format!("node {index} has two parents or is its own ancestor")));
         }
-        let transform = outer * place(node).matrix();
+        let own_place = place(node);
+        if let rig::Place::Matrix(matrix) = &own_place
+            && !is_affine(matrix)
+        {
+            let (path, row) = (path.display(), matrix.row(3));
+            draft.warnings.push(format!(
+                "{path}: the matrix of node {index} ends in the row {row} and not in 0, 0, 0, 1: it may be transposed, and the row is ignored"
+            ));
+        }
+        let transform = outer * own_place.matrix();
         let own = index as usize;
         stack.extend(node.children.iter().rev().map(|&child| (child, Some(own), transform)));
         placed.push(Placed { index: own, parent, node, transform });

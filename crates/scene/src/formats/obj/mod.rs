@@ -43,6 +43,7 @@ use crate::{LoadError, Objects};
 
 /// Reads an OBJ file and its material libraries into `draft`.
 pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
+    draft.access.check_content(path, &bytes)?;
     let mut content = parse::parse(path, text::with_line_feeds(&mut bytes), draft.smooths())?;
     // From here on its memory is needed for the vertices.
     drop(bytes);

@@ -41,6 +41,7 @@ const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Reads a PLY file into `draft`.
 pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
+    draft.access.check_content(path, &bytes)?;
     let mut notes = Notes::default();
     let header = header::read(path, &bytes, &mut notes)?;
     let rows = Rows::new(&bytes, &header);

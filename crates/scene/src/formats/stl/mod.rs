@@ -26,6 +26,7 @@ use crate::{LoadError, Objects, Position};
 
 /// Reads an STL file into `draft`.
 pub(crate) fn read(path: &Path, mut bytes: Vec<u8>, placement: &Placement, draft: &mut Draft) -> Result<(), LoadError> {
+    draft.access.check_content(path, &bytes)?;
     if !binary::has_exact_length(&bytes) && is_text(&bytes) {
         let soup = ascii::read(path, with_line_feeds(&mut bytes))?;
         hand_over(path, soup, bytes, placement, draft)

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::directions::{direction, frame};
 use super::harmonics::Irradiance;
@@ -16,7 +17,7 @@ use crate::Up;
 ///
 /// In its middle is the north: −Z if Y is up, +Y if Z is up. East, +X, is to its right. The sun is kept apart from the image: it is a light of the
 /// scene, too, and a thousand times brighter than anything else.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Environment {
     /// For display: the file's name, or the kind of sky.
     pub name: String,
@@ -30,19 +31,22 @@ pub struct Environment {
 }
 
 /// Lights of a panorama, and what is left of it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bright {
     pub(super) discs: Vec<Sun>,
     pub(super) rest: Environment,
 }
 
 /// The image, and what follows from it, which is made when it is asked for.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Levels {
+    #[serde(with = "crate::model::packed")]
     pub(super) image: Vec<[f32; 3]>,
     /// Smaller and smaller means.
+    #[serde(skip)]
     lower: OnceLock<Vec<EnvironmentLevel>>,
     /// What surfaces receive.
+    #[serde(skip)]
     pub(super) irradiance: OnceLock<Irradiance>,
 }
 

@@ -3,6 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use crate::{Light, LightError};
 
@@ -10,7 +11,7 @@ use crate::{Light, LightError};
 pub(super) const SUN_ANGLE: f32 = 0.533;
 
 /// A disc that is much brighter than all around it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sun {
     /// The unit vector to its centre.
     pub direction: Vec3,

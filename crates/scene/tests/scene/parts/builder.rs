@@ -1,7 +1,7 @@
 use glam::{DMat4, DVec3, Vec3};
 use lightmesh_scene::internals::builder::take;
 use lightmesh_scene::internals::loaded_mesh::LoadedMesh;
-use lightmesh_scene::{MeshPart, Objects, Position, SceneBuilder};
+use lightmesh_scene::{GeometryError, MeshPart, Objects, Position, SceneBuilder};
 
 const CORNERS: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
 
@@ -27,6 +27,20 @@ fn a_scene_far_away_keeps_its_shape() {
     let [a, b, c] = mesh.corners(0);
     assert!((b - a - Vec3::X).length() < 1e-6 && (c - a - Vec3::Y).length() < 1e-6);
     assert!((origin + a.as_dvec3() - offset).length() < 1e-6);
+}
+
+#[test]
+fn a_map_that_is_not_affine_is_refused() {
+    let moved = DMat4::from_translation(DVec3::new(1.0, 2.0, 3.0));
+    let refused = Err(GeometryError::NotAffine { place: 0, row: "1, 2, 3, 1".to_owned() });
+    let mut builder = SceneBuilder::new();
+    assert_eq!(builder.add(part(), &moved.transpose(), |_| 0), refused);
+    assert_eq!(builder.add_instances(part(), &[moved.transpose(), moved], "name", |_| 0), refused);
+    assert!(builder.add(part(), &DMat4::from_scale(DVec3::ONE).mul_scalar(2.0), |_| 0).is_err());
+    // What products and inverses round is no mistake.
+    let turned = moved * DMat4::from_rotation_y(0.3) * DMat4::from_scale(DVec3::new(3.0, 0.1, 7.0));
+    builder.add(part(), &turned.inverse().inverse(), |_| 0).unwrap();
+    assert_eq!(builder.finish().1.triangles.len(), 1);
 }
 
 #[test]

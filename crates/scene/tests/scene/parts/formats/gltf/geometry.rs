@@ -195,6 +195,14 @@ fn a_matrix_is_read_by_columns() {
     assert_eq!(corners, [Vec3::new(7.0, 8.0, 9.0), Vec3::new(7.0, 10.0, 9.0), Vec3::new(5.0, 8.0, 9.0)]);
 }
 
+#[test]
+fn a_matrix_that_is_transposed_is_told() {
+    let mut document = triangle();
+    document["nodes"][0]["matrix"] = json!([1, 0, 0, 7, 0, 1, 0, 8, 0, 0, 1, 9, 0, 0, 0, 1]);
+    let warnings = open(&document).warnings;
+    assert!(warnings.iter().any(|warning| warning.contains("node 0 ends in the row [7, 8, 9, 1]")), "{warnings:?}");
+}
+
 /// The triangle in a node with instances.
 pub(super) fn instanced() -> serde_json::Value {
     let mut document = triangle();
