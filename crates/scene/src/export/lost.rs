@@ -2,7 +2,7 @@
 
 use glam::{Affine2, Mat2, Vec3};
 
-use super::glb::{material::has_alpha, material::shown_emission, pictures::parts};
+use super::glb::{material::has_alpha, material::is_unlit, material::shown_emission, pictures::parts};
 use super::lights::own_lights;
 use crate::{Falloff, Light, LightKind, Material, Projection, Scene};
 
@@ -36,9 +36,9 @@ pub(super) fn to_others(scene: &Scene) -> Vec<String> {
             "the same at any distance",
             "with inverse-square falloff, in candela that give the same light at the middle of the scene",
         ),
-        (light(is_surface), "light", "shining to one side of a surface", "as points that shine to all sides"),
-        (light(has_other_size), "light", "with a size", "as points, with hard shadows"),
-        (light(|it| it.visible), "light", "that cameras see", "without their surface"),
+        (light(is_surface), "light", "shining to one side of a surface", "as light from a point to all sides"),
+        (light(has_other_size), "light", "with a size", "as light from a point, with hard shadows"),
+        (light(|it| it.visible), "light", "that cameras see", "without a surface"),
         (camera, "camera", "with a shift", "without it"),
         (horizontal, "camera", "with a fixed horizontal field of view", "with that of a square image"),
         (
@@ -55,10 +55,10 @@ pub(super) fn to_others(scene: &Scene) -> Vec<String> {
         ),
         (material(|it| it.catcher), "material", "that catches shadows", "as an ordinary surface"),
         (
-            material(|it| it.texture.is_some() && shown_emission(it) != it.emission + it.emission_tinted),
+            material(|it| !is_unlit(it) && shown_emission(it) != it.emission + it.emission_tinted),
             "material",
-            "that shows its image unlit",
-            "lit",
+            "that shows its image unlit in part",
+            "without that part",
         ),
         (
             material(|it| it.dielectric.is_none() && it.opacity.is_some_and(|opacity| !has_alpha(&opacity, it))),
@@ -76,13 +76,6 @@ pub(super) fn to_others(scene: &Scene) -> Vec<String> {
         ),
         (material(is_sheared), "material", "with an image that is sheared", "with one that is turned and scaled only"),
         (bright, "vertex colour", "above 1", "as 1"),
-        (
-            usize::from(scene.lights.ambient.is_some_and(|it| it != Vec3::ZERO)),
-            "scene",
-            "with ambient light",
-            "without it",
-        ),
-        (usize::from(scene.lights.background.is_some()), "scene", "with a background", "before one of their own"),
     ];
     let sentence = |(count, what, which, shown): (usize, &str, &str, &str)| {
         let plural = if count == 1 { "" } else { "s" };
@@ -93,7 +86,12 @@ pub(super) fn to_others(scene: &Scene) -> Vec<String> {
             )
         })
     };
-    counted.into_iter().filter_map(sentence).collect()
+    let has_ambient = scene.lights.ambient.is_some_and(|ambient| ambient != Vec3::ZERO);
+    let of_scene = [
+        has_ambient.then(|| "ambient light: other programs show the scene without it".to_owned()),
+        scene.lights.background.map(|_| "a background: other programs show one of their own".to_owned()),
+    ];
+    counted.into_iter().filter_map(sentence).chain(of_scene.into_iter().flatten()).collect()
 }
 
 /// The materials of triangles.

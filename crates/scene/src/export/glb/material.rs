@@ -11,15 +11,16 @@ const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
 const IOR: &str = "KHR_materials_ior";
 const SPECULAR: &str = "KHR_materials_specular";
 const TRANSMISSION: &str = "KHR_materials_transmission";
+const UNLIT: &str = "KHR_materials_unlit";
 const VOLUME: &str = "KHR_materials_volume";
 /// The extensions of materials.
-pub(super) const EXTENSIONS: [&str; 5] = [EMISSIVE_STRENGTH, IOR, SPECULAR, TRANSMISSION, VOLUME];
+pub(super) const EXTENSIONS: [&str; 6] = [EMISSIVE_STRENGTH, IOR, SPECULAR, TRANSMISSION, UNLIT, VOLUME];
 
 /// Metallic-roughness for other programs (the inverse of the lobe in `formats::gltf::material`), our coefficients in the
 /// extras.
 pub(super) fn material(material: &Material, index: usize, pictures: &Pictures) -> Value {
     let clamped = |color: Vec3| color.clamp(Vec3::ZERO, Vec3::ONE).to_array();
-    let [r, g, b] = clamped(material.kd);
+    let [r, g, b] = clamped(if is_unlit(material) { material.emission_tinted } else { material.kd });
     let matt = material.ks == Vec3::ZERO && material.dielectric.is_none();
     let (metallic, roughness) = match material.faceted() {
         Some(facets) => (facets.metallic, facets.roughness),
@@ -77,7 +78,9 @@ pub(super) fn material(material: &Material, index: usize, pictures: &Pictures) -
         let color = if facets.grazing > 0.0 { color.max(Vec3::ZERO).to_array() } else { [1.0; 3] };
         entry["extensions"][SPECULAR] = json!({"specularFactor": facets.grazing, "specularColorFactor": color});
     }
-    if matt && material.faceted().is_none() {
+    if is_unlit(material) {
+        entry["extensions"][UNLIT] = json!({});
+    } else if matt && material.faceted().is_none() {
         // glTF puts a glossy layer on everything else.
         entry["extensions"][SPECULAR] = json!({"specularFactor": 0.0});
     }
@@ -112,6 +115,17 @@ pub(super) fn material(material: &Material, index: usize, pictures: &Pictures) -
         entry["pbrMetallicRoughness"]["baseColorFactor"] = json!([r, g, b, 1.0]);
     }
     entry
+}
+
+/// Whether it shows its colour and its image as they are, and nothing else.
+pub(in crate::export) fn is_unlit(material: &Material) -> bool {
+    let rest = [material.kd, material.ks, material.ks_tinted, material.emission];
+    let has_images = material.emission_texture.is_some() || material.normal_texture.is_some();
+    material.emission_tinted != Vec3::ZERO
+        && rest == [Vec3::ZERO; 4]
+        && material.emission_tinted.max_element() <= 1.0
+        && !has_images
+        && material.dielectric.is_none()
 }
 
 /// What other programs see it emit.

@@ -226,6 +226,17 @@ fn matt_surfaces_have_no_glossy_layer_and_others_have_theirs() {
     assert_eq!((&dim["specularFactor"], &dim["specularColorFactor"][1]), (&0.5.into(), &0.5.into()));
 }
 
+#[test]
+fn what_is_shown_as_it_is_is_unlit() {
+    let unlit = Material::matt([0.0; 3]).with_ka([0.0; 3]).with_emission_tinted([0.5, 0.25, 1.0]);
+    let scene = shown(unlit.with_texture(TextureUse::new(0)), vec![texture("sign", [1, 1], |_| [9, 9, 9, 255])]);
+    let entry = &json(&scene)["materials"][0];
+    assert!(entry["extensions"]["KHR_materials_unlit"].is_object(), "{entry}");
+    assert_eq!(list(&entry["pbrMetallicRoughness"]["baseColorFactor"]), [0.5, 0.25, 1.0, 1.0]);
+    assert_eq!(reread(&scene, &LoadOptions::default()).geometry.materials, scene.geometry.materials);
+    assert_eq!(scene.export_warnings("a.glb").unwrap(), [""; 0]);
+}
+
 fn texture(name: &str, size: [u32; 2], texel: impl Fn(u32) -> [u8; 4]) -> Texture {
     Texture { name: name.into(), size, texels: (0..size[0] * size[1]).map(texel).collect() }
 }
@@ -313,16 +324,16 @@ fn what_gltf_cannot_say_is_a_warning() {
     for expected in [
         "2 lights the same at any distance: other programs show them with inverse-square falloff, in candela that give the same light at the \
          middle of the scene",
-        "1 light shining to one side of a surface: other programs show it as points that shine to all sides",
-        "2 lights with a size: other programs show them as points, with hard shadows",
-        "1 light that cameras see: other programs show it without their surface",
+        "1 light shining to one side of a surface: other programs show it as light from a point to all sides",
+        "2 lights with a size: other programs show them as light from a point, with hard shadows",
+        "1 light that cameras see: other programs show it without a surface",
         "1 material with a Phong lobe (ks, shininess): other programs show it as a rough layer",
         "1 material that reflects more light than it gets: other programs show it with a colour of at most 1",
         "1 material that catches shadows: other programs show it as an ordinary surface",
         "1 material that tints the light that it lets through: other programs show it without that tint",
         "3 vertex colours above 1: other programs show them as 1",
-        "1 scene with ambient light: other programs show it without it",
-        "1 scene with a background: other programs show it before one of their own",
+        "ambient light: other programs show the scene without it",
+        "a background: other programs show one of their own",
     ] {
         assert!(warnings.iter().any(|warning| warning == expected), "{expected}: {warnings:#?}");
     }
