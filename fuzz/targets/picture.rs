@@ -1,4 +1,4 @@
-//! Images as `lightmesh compare` reads them: PNG, EXR and BMP, recognised by their first bytes. (JPEG is the decoder of `texture`.)
+//! Images as `lightmesh compare` reads them: PNG, EXR, HDR and BMP, recognised by their first bytes. (JPEG is the decoder of `texture`.)
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -20,13 +20,18 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// The number of pixels in the header of a PNG or a BMP: a few bytes can truly be a large image in one colour. An EXR cannot.
+/// The number of pixels in the header of a PNG, an HDR or a BMP: a few bytes can truly be a large image in one colour. An EXR cannot.
 fn stated_pixels(bytes: &[u8]) -> Option<u64> {
     let number = |at: usize| bytes.get(at..at + 4)?.first_chunk().copied();
     let [width, height] = if bytes.starts_with(b"BM") {
         [number(18)?, number(22)?].map(|side| i32::from_le_bytes(side).unsigned_abs())
     } else if bytes.starts_with(b"\x89PNG") {
         [number(16)?, number(20)?].map(u32::from_be_bytes)
+    } else if bytes.starts_with(b"#?") {
+        let text = String::from_utf8_lossy(bytes);
+        let size = text.split("\n-Y ").nth(1)?.lines().next()?.replace("+X", "");
+        let mut sides = size.split_ascii_whitespace().map(|side| side.parse().unwrap_or(0));
+        [sides.next()?, sides.next()?]
     } else {
         return None;
     };

@@ -35,7 +35,7 @@ pub enum LoadError {
 #[non_exhaustive]
 pub enum DecodeError {
     /// The first bytes do not match a known format.
-    #[error("not an image in a known format; convert it to one of these: {}", Format::known())]
+    #[error("not an image in a known format; convert it to one of these: {}, hdr", Format::known())]
     UnknownFormat,
     /// This crate was built without the format.
     #[error("this program was built without {format} files: build it with the feature {}", format.feature())]
@@ -55,7 +55,13 @@ pub enum DecodeError {
         /// Height in pixels.
         height: u32,
     },
-    /// An OpenEXR file without the channels `R`, `G`, `B` or `Y` in its first part.
+    /// A Radiance picture that is damaged, or of a kind that is not read.
+    #[error("the hdr data is damaged, incomplete or unsupported ({message}): export it again")]
+    Radiance {
+        /// What is wrong.
+        message: String,
+    },
+    /// An OpenEXR file without the channels `R`, `G`, `B` or `Y`, those of one layer, or only one.
     #[error("the exr file has no channels R, G, B or Y, only {found}; export it with one of these sets")]
     Channels {
         /// Names of its channels.

@@ -10,6 +10,7 @@ pub mod bmp {
 
 pub mod compare {
     pub use crate::compare::flip::flip;
+    pub use crate::compare::hdr_flip_errors;
 }
 
 #[cfg(any(feature = "exr", feature = "png"))]

@@ -4,8 +4,9 @@
 //!
 //! - [`Frame::save`] writes bmp, png, exr or jpg, according to the path's extension, and [`Frame::save_layers`] a multilayer exr;
 //!   [`publish`] lets several files appear together;
-//! - [`Frame::load`] reads the same formats back into linear values;
-//! - [`compare`] measures the difference between two frames, as numbers and as an image (FLIP).
+//! - [`Frame::load`] reads the same formats back into linear values, and Radiance's hdr;
+//! - [`compare`] measures the difference between two frames as they are shown, as numbers and as an image (FLIP); [`compare_linear`] also that
+//!   of values above 1 (HDR-FLIP).
 //!
 //! [`SaveOptions`] say how: exposure, [`View`], transfer function and bits of files that are looked at ([`Display`]), numbers and compression of
 //! exr files ([`ExrOptions`]). All of it is only applied here; everything else in the workspace uses linear values.
@@ -58,16 +59,18 @@ mod matte;
 mod options;
 #[cfg(feature = "png")]
 mod png;
+mod radiance;
 mod save;
 mod sizes;
 mod transfer;
 
-pub use compare::{CompareError, Comparison, compare};
+pub use compare::{CompareError, Comparison, LinearDifference, compare, compare_linear};
 pub use display::{BitDepth, Display, UnknownView, View};
 pub use error::{DecodeError, EncodeError, LoadError, SaveError};
 pub use format::Format;
 pub use frame::{Frame, FrameError, FrameParts, Layers, Window};
 pub use lightmesh_files::{Output, PublishError, Ready, publish};
+pub use load::Range;
 pub use matte::{MAX_RANKS, Matte, Rank};
 pub use options::{Description, ExrCompression, ExrOptions, ExrParts, ExrSamples, SaveOptions, UnknownWord};
 pub use save::{check_image, check_options, check_size, check_writable};

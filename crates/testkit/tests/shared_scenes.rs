@@ -77,6 +77,32 @@ fn the_same_numbers_in_another_format_give_the_same_picture() {
     }
 }
 
+#[test]
+#[cfg_attr(not(shared_scenes), ignore = "needs ../shared/scenes")]
+fn an_exported_model_gives_the_same_picture() {
+    let folder = std::env::temp_dir().join(format!("lightmesh-{}-exports", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("the temporary folder is writable");
+    let image = |scene: &Scene| render(scene, &Settings::default().with_aa(1).with_size(SIZE).with_samples(4)).image;
+    for model in MODELS {
+        let scene = model.open();
+        let expected = image(&scene);
+        for name in ["copy.glb", "copy.toml"] {
+            let path = folder.join(name);
+            scene.export(&path).unwrap_or_else(|error| panic!("{error}"));
+            let mut copy = Scene::open(&path).unwrap_or_else(|error| panic!("{error}"));
+            // Written, its up vector stands at a right angle to the view.
+            copy.cameras[0] = scene.cameras[0].clone();
+            let copy = image(&copy);
+            let [one, other] = [&expected, &copy].map(|image| image.color().as_flattened());
+            let largest = one.iter().copied().fold(0.0, f32::max);
+            let difference = mean_difference(one, other) / f64::from(largest);
+            // Sums over triangles in another order are rounded otherwise, and a sample at an edge may fall to the other side.
+            assert!(difference < 1e-5, "{}, {name}: {difference}", model.file);
+        }
+    }
+    std::fs::remove_dir_all(&folder).expect("the files were just written");
+}
+
 fn open(file: &str) -> Scene {
     MODELS.iter().find(|model| model.file == file).expect("a shared model").open()
 }

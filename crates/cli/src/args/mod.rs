@@ -184,10 +184,11 @@ pub(crate) struct InfoArgs {
 /// Compare two images
 ///
 /// RMSE, PSNR and the maximum difference compare display values in [0, 1]. FLIP predicts the difference that a viewer
-/// sees when flipping between the images. The exit code is 1 if a measure exceeds its threshold.
+/// sees when flipping between the images. Of two exr or hdr files, linear values are compared, too: their RMSE relative
+/// to A, and HDR-FLIP, the largest FLIP error over all exposures. The exit code is 1 if a measure exceeds its threshold.
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
-    /// Compare with this reference: bmp, png, exr or jpg
+    /// Compare with this reference: bmp, png, exr, hdr or jpg
     #[arg(value_name = "A")]
     pub(crate) reference: PathBuf,
 
@@ -199,11 +200,11 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "D.png")]
     pub(crate) diff: Option<PathBuf>,
 
-    /// Fail if the mean FLIP error exceeds X [default: none]
+    /// Fail if the mean FLIP error exceeds X; of two exr or hdr files, HDR-FLIP, too [default: none]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) max_flip: Option<Bound>,
 
-    /// Fail if the RMSE exceeds X [default: none]
+    /// Fail if the RMSE exceeds X; of two exr or hdr files, the relative RMSE of linear values, too [default: none]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) max_rmse: Option<Bound>,
 

@@ -6,7 +6,7 @@ use lightmesh::Scene;
 use lightmesh::request::Host;
 use lightmesh::request::files::Destination;
 
-use super::open::open_copied;
+use super::open::open_placed;
 use crate::args::ExportArgs;
 use crate::failure::Failure;
 use crate::memory;
@@ -27,13 +27,10 @@ pub(super) fn run(args: &ExportArgs) -> Result<(), Failure> {
         0 => String::new(),
         made => format!(", {made} smooth normals"),
     };
-    if scene.animation().is_some() {
-        watcher.warning("animations are not exported: the scene is written at rest");
-    }
-    if let Some(environment) = &scene.lights.environment {
-        watcher.warning(&format!("{}: skies and panoramas are not exported, only the sun in them", environment.name));
-    }
-    let (name, triangles) = (&scene.name, scene.geometry.mesh.triangles.len());
+    // What goes to standard output is a GLB file.
+    let file = destination.file().unwrap_or(Path::new("scene.glb"));
+    scene.export_warnings(file)?.iter().for_each(|warning| watcher.warning(warning));
+    let (name, triangles) = (&scene.name, scene.geometry.mesh.triangle_count());
     watcher.summary(&format!("{name}, {triangles} triangles{normals}: {destination}"));
     Ok(())
 }
@@ -44,7 +41,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
         output::check_writable(path)?;
     }
     let outputs = Outputs::new([("-o", Some(path)), ("the triangles of -o", mesh.as_deref())])?;
-    let scene = open_copied(&args.scene, args.smooth.0, &outputs, watcher)?;
+    let scene = open_placed(&args.scene, args.smooth.0, &outputs, watcher)?;
     memory::during(EXPORTING, || scene.export(path))?;
     Ok(scene)
 }
@@ -52,7 +49,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
 /// As one GLB file, the only format that is one.
 fn to_stdout(destination: &Destination, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, Failure> {
     destination.check_binary("-o")?;
-    let scene = open_copied(&args.scene, args.smooth.0, &Outputs::default(), watcher)?;
+    let scene = open_placed(&args.scene, args.smooth.0, &Outputs::default(), watcher)?;
     let file = memory::during(EXPORTING, || Ok::<_, Failure>(destination.ready(&scene.to_glb()?)?))?;
     output::publish(vec![file])?;
     Ok(scene)

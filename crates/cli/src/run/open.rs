@@ -27,6 +27,17 @@ pub(super) fn open_copied(
     open((&arg.scene, request.scene_format), &load_options(&request, smooth, Instancing::Never), outputs, watcher)
 }
 
+/// Reads a scene of which meshes in several places are stored once.
+pub(super) fn open_placed(
+    arg: &SceneArg,
+    smooth: Option<CreaseAngle>,
+    outputs: &Outputs,
+    watcher: &Watcher,
+) -> Result<Scene, Failure> {
+    let request = arg.reading.request();
+    open((&arg.scene, request.scene_format), &load_options(&request, smooth, Instancing::Always), outputs, watcher)
+}
+
 /// Reads the scene, of which outputs must not overwrite any file, and prints its warnings.
 pub(super) fn open(
     (path, format): (&Path, Option<SceneFormat>),

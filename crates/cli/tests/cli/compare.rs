@@ -62,3 +62,31 @@ fn what_cannot_be_compared_is_refused() {
     assert!(refused(&["dark.png", "light.png", "--diff", "no/d.png"]).contains("does not exist"));
     assert!(refused(&["dark.png", "light.png", "--diff", "light.png"]).contains("B and --diff are the same file"));
 }
+
+/// Two EXR files of light that a screen shows white.
+#[test]
+fn light_in_exr_files_has_no_limit() {
+    let place = pictures();
+    for (name, value) in [("two.exr", 2.0), ("four.exr", 4.0)] {
+        Frame::new(16, 16, vec![[value; 3]; 256]).unwrap().save(place.path(name)).unwrap();
+    }
+    let done = place.good(&["compare", "two.exr", "four.exr"]);
+    assert!(done.stdout.contains("mean FLIP       0.000000\nrelative RMSE   1.000000 (linear values)\n"), "{done:?}");
+    assert!(done.stdout.ends_with("max difference  2.000000 (linear values)\nmean HDR-FLIP   0.144816\n"), "{done:?}");
+    for (bound, message) in
+        [("--max-flip", "mean HDR-FLIP 0.144816 exceeds --max-flip 0.1"), ("--max-rmse", "relative RMSE 1.0")]
+    {
+        let exceeded = place.run(&["compare", "two.exr", "four.exr", bound, "0.1"]);
+        assert_eq!(exceeded.code, Some(1));
+        assert!(exceeded.stderr.contains(message), "{exceeded:?}");
+    }
+    let json: Value = serde_json::from_str(&place.good(&["compare", "two.exr", "four.exr", "--json"]).stdout).unwrap();
+    assert_eq!(
+        (&json["rmse"], &json["relative_rmse"], &json["max_linear_difference"]),
+        (&0.0.into(), &1.0.into(), &2.0.into())
+    );
+    // With an 8-bit file, what is displayed counts.
+    let mixed: Value =
+        serde_json::from_str(&place.good(&["compare", "two.exr", "light.png", "--json"]).stdout).unwrap();
+    assert!(mixed.get("relative_rmse").is_none(), "{mixed}");
+}

@@ -44,6 +44,49 @@ fn an_exported_scene_gives_the_same_picture() {
     assert!(refused.contains("`.obj` is not a format that can be written"), "{refused}");
 }
 
+/// Seven boxes with names, of two materials, on a plane.
+fn boxes() -> String {
+    let head = "[camera]\nposition = [4, 6, 14]\ntarget = [3, 0, 0]\nvfov = 40\n[[material]]\nname = \"red\"\nkd = [0.8, 0.1, 0.1]\n\
+                [[material]]\nname = \"white\"\nkd = [0.8, 0.8, 0.8]\n";
+    let one = |number: usize| {
+        let material = ["red", "white"][number % 2];
+        format!(
+            "[[box]]\nname = \"house {number}\"\ncenter = [{number}, 0.5, 0]\nsize = [0.6, 1, 0.6]\nmaterial = \"{material}\"\n"
+        )
+    };
+    head.to_owned() + &(1..=7).map(one).collect::<String>()
+}
+
+#[test]
+fn an_exported_scene_keeps_its_objects() {
+    let place = Place::new();
+    place.write("boxes.toml", &boxes());
+    let rows = |scene: &str| -> Vec<String> {
+        let sun =
+            ["--sun", "48,0,2026-06-21Z,08:00-16:00/1h", "--sun-hours", "h.csv", "--size", "96x64", "--no-studio"];
+        place.good(&[&["render", scene][..], &sun].concat());
+        let table = String::from_utf8(place.read("h.csv")).unwrap();
+        table.lines().skip(1).map(str::to_owned).collect()
+    };
+    let source = rows("boxes.toml");
+    assert_eq!(source.len(), 7, "{source:?}");
+    place.good(&["export", "boxes.toml", "-o", "boxes.glb", "-q"]);
+    assert_eq!(rows("boxes.glb"), source);
+    for name in ["copy.toml", "copy.glb"] {
+        place.good(&["export", "boxes.glb", "-o", name, "-q"]);
+        assert_eq!(rows(name), source, "{name}");
+    }
+}
+
+#[test]
+fn an_export_says_what_other_programs_do_not_see() {
+    let place = Place::new();
+    let done = place.good(&["export", "builtin:gazebo", "-o", "gazebo.glb"]);
+    assert!(done.stderr.contains("warning: 3 lights the same at any distance: other programs show them"), "{done:?}");
+    let done = place.good(&["export", "builtin:gazebo", "-o", "gazebo.toml"]);
+    assert!(!done.stderr.contains("warning"), "{done:?}");
+}
+
 #[test]
 fn info_says_which_way_is_up() {
     let place = Place::new();

@@ -59,15 +59,25 @@ const BLOCK: usize = 32;
 
 /// The error of each pixel, in [0, 1]; rows of `width` sRGB codes.
 pub fn flip(reference: &[[u8; 3]], test: &[[u8; 3]], width: usize) -> Vec<f32> {
+    let linear: [f32; 256] = std::array::from_fn(|code| Transfer::Srgb.decode(code as u8));
+    let decoded = |codes: &[[u8; 3]], pixel: usize| codes[pixel].map(|code| linear[usize::from(code)]);
+    flip_of(|pixel| decoded(reference, pixel), |pixel| decoded(test, pixel), (width, reference.len() / width))
+}
+
+/// The same of images that are given by the linear colour of each pixel, from 0 to 1, and by width and height.
+pub(super) fn flip_of(
+    reference: impl Fn(usize) -> [f32; 3] + Sync,
+    test: impl Fn(usize) -> [f32; 3] + Sync,
+    (width, height): (usize, usize),
+) -> Vec<f32> {
     let filters = Filters::new(PIXELS_PER_DEGREE);
     let color = ColorDifference::new();
-    let linear: [f32; 256] = std::array::from_fn(|code| Transfer::Srgb.decode(code as u8));
-    let mut errors = vec![0.0; reference.len()];
+    let mut errors = vec![0.0; width * height];
     errors.par_chunks_mut(BAND * width).enumerate().for_each(|(number, errors)| {
         let first = number * BAND;
         let rows = first..first + errors.len() / width;
-        let [reference, test] =
-            [reference, test].map(|codes| Across::new(codes, width, rows.clone(), &filters, &linear));
+        let reference = Across::new(&reference, (width, height), rows.clone(), &filters);
+        let test = Across::new(&test, (width, height), rows.clone(), &filters);
         let mut seen = [Seen::new(width), Seen::new(width)];
         for (row, errors) in rows.zip(errors.chunks_exact_mut(width)) {
             reference.down(row, &filters, &mut seen[0]);
@@ -171,8 +181,13 @@ struct Across {
 
 impl Across {
     /// Of what `rows` need from the image.
-    fn new(codes: &[[u8; 3]], width: usize, rows: Range<usize>, filters: &Filters, linear: &[f32; 256]) -> Across {
-        let (reach, height, stride) = (filters.reach(), codes.len() / width, width.next_multiple_of(BLOCK));
+    fn new(
+        color: impl Fn(usize) -> [f32; 3],
+        (width, height): (usize, usize),
+        rows: Range<usize>,
+        filters: &Filters,
+    ) -> Across {
+        let (reach, stride) = (filters.reach(), width.next_multiple_of(BLOCK));
         let rows = rows.start.saturating_sub(reach)..(rows.end + reach).min(height);
         let plane = || vec![0.0; rows.len() * stride];
         let mut contrast = [plane(), plane(), plane(), plane()];
@@ -180,10 +195,8 @@ impl Across {
         let mut wide: [Vec<f32>; 4] = std::array::from_fn(|_| vec![0.0; stride + 2 * reach]);
         for (number, row) in rows.clone().enumerate() {
             // 1. Opponent colours; the borders go on.
-            let codes = &codes[row * width..][..width];
             for x in 0..stride + 2 * reach {
-                let code = codes[x.saturating_sub(reach).min(width - 1)];
-                let [y, cx, cz] = opponent(code.map(|code| linear[usize::from(code)]));
+                let [y, cx, cz] = opponent(color(row * width + x.saturating_sub(reach).min(width - 1)));
                 let channels = [y, cx, cz, y * (1.0 / 116.0) + 16.0 / 116.0];
                 wide.iter_mut().zip(channels).for_each(|(channel, value)| channel[x] = value);
             }

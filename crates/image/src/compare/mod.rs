@@ -5,8 +5,11 @@
 //! count. FLIP (Andersson et al., *FLIP: A Difference Evaluator for Alternating Images*, HPG 2020) predicts the difference that a
 //! viewer perceives when flipping between the images, at 67 pixels per degree: a 0.7 m wide 4K screen at 0.7 m. It gets display
 //! values rounded to 8 bits.
+//!
+//! [`compare_linear`] adds measures of linear values, which have no limit: 2 and 4 are both white on a screen, and not the same light.
 
 pub(crate) mod flip;
+mod hdr_flip;
 mod magma;
 
 use serde::{Serialize, Serializer};
@@ -15,6 +18,7 @@ use thiserror::Error;
 use crate::transfer::linear_to_srgb;
 use crate::{Frame, Transfer};
 use flip::flip;
+use hdr_flip::{Exposures, hdr_flip};
 use magma::MAGMA;
 
 /// The difference between two frames; all 0 (and an infinite PSNR) if they look the same.
@@ -30,9 +34,29 @@ pub struct Comparison {
     pub max_difference: f64,
     /// Mean of the FLIP error over all pixels, in [0, 1].
     pub mean_flip: f64,
-    /// The FLIP error of each pixel in the magma colour map, from black (equal) to yellow (maximum).
+    /// The difference of linear values, of [`compare_linear`] only: in JSON, its fields are beside the others.
+    #[serde(flatten)]
+    pub linear: Option<LinearDifference>,
+    /// The FLIP error of each pixel in the magma colour map, from black (equal) to yellow (maximum); of [`compare_linear`], the HDR-FLIP error.
     #[serde(skip)]
     pub difference: Frame,
+}
+
+/// The difference between the linear values of two frames.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct LinearDifference {
+    /// Root of the mean squared difference over all pixels and channels, divided by the root of the reference's mean square: 1 if all values are
+    /// twice those of the reference. Infinite if there is light in the test only, which is `null` in JSON.
+    #[serde(serialize_with = "null_where_infinite")]
+    pub relative_rmse: f64,
+    /// Maximum difference over all channels and pixels.
+    #[serde(serialize_with = "null_where_infinite")]
+    pub max_linear_difference: f64,
+    /// Mean of the HDR-FLIP error over all pixels, in [0, 1].
+    pub mean_hdr_flip: f64,
+    /// The first and the last exposure of HDR-FLIP, in stops, and their number.
+    pub hdr_exposures: (f32, f32, usize),
 }
 
 /// Why two frames cannot be compared.
@@ -76,7 +100,37 @@ pub fn compare(reference: &Frame, test: &Frame) -> Result<Comparison, CompareErr
 
     let (rmse, max_difference) = display_difference(reference, test);
     let (mean_flip, difference) = flip_difference(reference, test);
-    Ok(Comparison { rmse, psnr: -20.0 * rmse.log10(), max_difference, mean_flip, difference })
+    Ok(Comparison { rmse, psnr: -20.0 * rmse.log10(), max_difference, mean_flip, linear: None, difference })
+}
+
+/// Compares as [`compare`] does, and linear values in addition: for files that store light, such as exr and hdr
+/// ([`Range::Light`](crate::Range::Light)). Measures are relative to the reference.
+///
+/// ```
+/// use lightmesh_image::{Frame, compare, compare_linear};
+///
+/// let [two, four] = [2.0, 4.0].map(|value| Frame::new(8, 8, vec![[value; 3]; 64]).expect("8 x 8 pixels"));
+/// assert_eq!(compare(&two, &four)?.mean_flip, 0.0); // both are white on a screen
+/// let linear = compare_linear(&two, &four)?.linear.expect("it is asked for");
+/// assert_eq!(linear.relative_rmse, 1.0);
+/// assert!(linear.mean_hdr_flip > 0.05);
+/// # Ok::<(), lightmesh_image::CompareError>(())
+/// ```
+///
+/// # Errors
+/// [`CompareError`] if the sizes differ, or a value is NaN.
+pub fn compare_linear(reference: &Frame, test: &Frame) -> Result<Comparison, CompareError> {
+    let comparison = compare(reference, test)?;
+    let (relative_rmse, max_linear_difference) = linear_difference(reference, test);
+    let exposures = Exposures::of(reference.color());
+    let errors = hdr_flip(reference.color(), test.color(), reference.width() as usize, exposures);
+    let linear = LinearDifference {
+        relative_rmse,
+        max_linear_difference,
+        mean_hdr_flip: mean(&errors),
+        hdr_exposures: (exposures.first, exposures.last, exposures.count),
+    };
+    Ok(Comparison { linear: Some(linear), difference: map(reference, &errors), ..comparison })
 }
 
 fn check_numbers(which: &'static str, frame: &Frame) -> Result<(), CompareError> {
@@ -101,6 +155,28 @@ fn display_difference(reference: &Frame, test: &Frame) -> (f64, f64) {
     ((sum / reference.len() as f64).sqrt(), largest)
 }
 
+/// Relative RMSE and maximum difference of linear values.
+fn linear_difference(reference: &Frame, test: &Frame) -> (f64, f64) {
+    let (reference, test) = (reference.color().as_flattened(), test.color().as_flattened());
+    let (mut sum, mut square, mut largest) = (0.0, 0.0, 0.0_f64);
+    for (&a, &b) in reference.iter().zip(test) {
+        let a = f64::from(a);
+        square += a * a;
+        // Infinities may be equal.
+        if a != f64::from(b) {
+            let difference = (a - f64::from(b)).abs();
+            sum += difference * difference;
+            largest = largest.max(difference);
+        }
+    }
+    let relative = match (sum, square) {
+        (0.0, _) => 0.0,
+        (sum, square) if sum.is_finite() => (sum / square).sqrt(),
+        _ => f64::INFINITY,
+    };
+    (relative, largest)
+}
+
 /// In single precision, like the colours: the curve's decimal constants then give exactly 1 for white.
 fn display(linear: f32) -> f64 {
     f64::from(linear_to_srgb(f64::from(linear.clamp(0.0, 1.0))) as f32)
@@ -110,12 +186,24 @@ fn display(linear: f32) -> f64 {
 fn flip_difference(reference: &Frame, test: &Frame) -> (f64, Frame) {
     let [first, second] = [reference, test].map(codes);
     let errors = flip(first.as_chunks().0, second.as_chunks().0, reference.width() as usize);
-    let mean = errors.iter().copied().map(f64::from).sum::<f64>() / errors.len() as f64;
-    let difference = reference.recolored(|pixel| {
+    (mean(&errors), map(reference, &errors))
+}
+
+/// The HDR-FLIP error of each pixel; rows of `width` linear colours.
+pub fn hdr_flip_errors(reference: &[[f32; 3]], test: &[[f32; 3]], width: usize) -> Vec<f32> {
+    hdr_flip(reference, test, width, Exposures::of(reference))
+}
+
+fn mean(errors: &[f32]) -> f64 {
+    errors.iter().copied().map(f64::from).sum::<f64>() / errors.len() as f64
+}
+
+/// Errors as colours.
+fn map(reference: &Frame, errors: &[f32]) -> Frame {
+    reference.recolored(|pixel| {
         let [_, red, green, blue] = MAGMA[(errors[pixel] * 255.0 + 0.5) as usize].to_be_bytes();
         [red, green, blue].map(|code| Transfer::Srgb.decode(code))
-    });
-    (mean, difference)
+    })
 }
 
 /// Three sRGB codes for each pixel.

@@ -15,14 +15,17 @@ use super::{ALPHA, COLOR, DEPTH, LUMINANCE, NORMAL, POSITION, REST, USED, light_
 use crate::sizes::checked_pixels;
 use crate::{DecodeError, Format, Frame, Layers, Matte};
 
+/// What Blender calls the layer of the image.
+const COMBINED: &str = "Combined";
+
 /// Maximum decompressed size of the channels of a file, in bytes.
 const MAX_BYTES: u64 = 1 << 36;
 
 /// Maximum expansion of any compression method: deflate reaches 1032, times 4/3 for 24-bit floats.
 const MAX_EXPANSION: u64 = 1376;
 
-/// Reads colours from the channels `R G B`, or from `Y` as grey, alpha if there is `A`, and the layers if all of their channels are present. The image
-/// is the file's data window.
+/// Reads colours from the channels `R G B`, from `Y` as grey, from those of a layer, or from the only channel as grey; alpha if there is `A`, and the
+/// layers if all of their channels are present. The image is the file's data window.
 pub fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let chunks = ::exr::block::read(Cursor::new(bytes), false).map_err(malformed)?;
     check_headers(chunks.headers(), bytes.len() as u64)?;
@@ -49,7 +52,7 @@ pub fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
         }
     }
     let frame = Frame::new(size.0 as u32, size.1 as u32, planes.color()?).map_err(malformed)?;
-    let frame = match planes.get(ALPHA) {
+    let frame = match planes.alpha() {
         Some(alpha) => frame.with_alpha(alpha).map_err(malformed)?,
         None => frame,
     };
@@ -116,9 +119,34 @@ impl Planes {
     }
 
     fn color(&self) -> Result<Vec<[f32; 3]>, DecodeError> {
-        let grey = || Some(self.get(LUMINANCE)?.into_iter().map(|value| [value; 3]).collect());
+        let grey = |name: &str| Some(self.get(name)?.into_iter().map(|value| [value; 3]).collect());
+        let of_layer = || self.vectors(COLOR.map(|channel| self.layer_name(channel)).each_ref().map(String::as_str));
         let names = || self.channels.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-        self.vectors(COLOR).or_else(grey).ok_or_else(|| DecodeError::Channels { found: names() })
+        let color = self.vectors(COLOR).or_else(|| grey(LUMINANCE)).or_else(of_layer).or_else(|| grey(self.single()?));
+        color.ok_or_else(|| DecodeError::Channels { found: names() })
+    }
+
+    /// That of the colours.
+    fn alpha(&self) -> Option<Vec<f32>> {
+        let is_own =
+            [COLOR[0], LUMINANCE].iter().any(|name| self.channels.contains_key(*name)) || self.single().is_some();
+        self.get(&if is_own { ALPHA.to_owned() } else { self.layer_name(ALPHA) })
+    }
+
+    /// A channel of the layer that is the image: that of a renderer's final image (`ViewLayer.Combined` in Blender's files), or the only one.
+    fn layer_name(&self, channel: &str) -> String {
+        let last = format!(".{}", COLOR[0]);
+        let mut layers: Vec<&str> = self.channels.keys().filter_map(|name| name.strip_suffix(&*last)).collect();
+        layers.retain(|layer| COLOR.iter().all(|color| self.channels.contains_key(&format!("{layer}.{color}"))));
+        let is_combined = |layer: &&&str| layer.rsplit('.').next() == Some(COMBINED);
+        let layer = layers.iter().find(is_combined).or(layers.first().filter(|_| layers.len() == 1));
+        format!("{}.{channel}", layer.unwrap_or(&""))
+    }
+
+    /// The only channel beside alpha.
+    fn single(&self) -> Option<&str> {
+        let mut others = self.channels.keys().filter(|name| *name != ALPHA);
+        others.next().filter(|_| others.next().is_none()).map(String::as_str)
     }
 
     fn layers(&self) -> Option<Layers> {

@@ -1,7 +1,7 @@
 //! Tests of the image comparison: equal images pass, and every kind of difference is detected with its value.
 
 use crate::pictures::{coded, layered, plain, ramp};
-use lightmesh_image::{CompareError, Frame, Transfer, compare};
+use lightmesh_image::{CompareError, Comparison, Frame, Transfer, compare, compare_linear};
 
 fn close(value: f64, expected: f64) -> bool {
     (value - expected).abs() <= 1e-6
@@ -110,4 +110,57 @@ fn json_has_the_four_measures() {
     let opposite = json(&plain(8, 8, [0.0; 3]), &plain(8, 8, [1.0; 3]));
     assert_eq!(opposite["psnr"], 0.0);
     assert!(opposite["mean_flip"].as_f64().is_some_and(|flip| flip > 0.9));
+}
+
+#[test]
+fn light_above_1_differs_although_a_screen_shows_it_white() {
+    let (two, four) = (plain(16, 16, [2.0; 3]), plain(16, 16, [4.0; 3]));
+    let display = compare(&two, &four).unwrap();
+    assert_eq!((display.rmse, display.mean_flip, display.linear), (0.0, 0.0, None));
+    let comparison = compare_linear(&two, &four).unwrap();
+    assert_eq!((comparison.rmse, comparison.mean_flip), (0.0, 0.0), "what is displayed is compared as before");
+    let linear = comparison.linear.unwrap();
+    assert_eq!((linear.relative_rmse, linear.max_linear_difference), (1.0, 2.0));
+    assert!(linear.mean_hdr_flip > 0.1, "{linear:?}");
+    assert_eq!(linear.hdr_exposures.2, 2);
+    assert!(comparison.difference.color() != display.difference.color(), "the map is that of HDR-FLIP");
+}
+
+#[test]
+fn linear_measures_are_those_of_the_reference() {
+    let ramp = ramp(64, 64);
+    let equal = compare_linear(&ramp, &ramp.clone()).unwrap().linear.unwrap();
+    assert_eq!((equal.relative_rmse, equal.max_linear_difference, equal.mean_hdr_flip), (0.0, 0.0, 0.0));
+    // A scale changes neither measure.
+    let scaled = |frame: &Frame, factor: f32| {
+        Frame::new(64, 64, frame.color().iter().map(|color| color.map(|value| factor * value)).collect()).unwrap()
+    };
+    let brighter = scaled(&ramp, 1.5);
+    let dim = compare_linear(&scaled(&ramp, 1.0 / 1024.0), &scaled(&brighter, 1.0 / 1024.0)).unwrap().linear.unwrap();
+    let bright = compare_linear(&ramp, &brighter).unwrap().linear.unwrap();
+    assert!(close(bright.relative_rmse, 0.5) && close(dim.relative_rmse, 0.5), "{bright:?} {dim:?}");
+    assert!((bright.mean_hdr_flip - dim.mean_hdr_flip).abs() < 1e-4, "{bright:?} {dim:?}");
+
+    let [black, light] = [plain(4, 4, [0.0; 3]), plain(4, 4, [1.0; 3])];
+    let linear = compare_linear(&black, &light).unwrap().linear.unwrap();
+    assert_eq!(linear.relative_rmse, f64::INFINITY);
+    let infinite = plain(4, 4, [f32::INFINITY; 3]);
+    assert_eq!(compare_linear(&infinite, &infinite.clone()).unwrap().linear.unwrap().relative_rmse, 0.0);
+    assert_eq!(compare_linear(&infinite, &light).unwrap().linear.unwrap().relative_rmse, f64::INFINITY);
+}
+
+#[test]
+fn json_has_linear_measures_beside_the_others() {
+    let (two, four) = (plain(8, 8, [2.0; 3]), plain(8, 8, [4.0; 3]));
+    let keys = |comparison: &Comparison| -> Vec<String> {
+        let json = serde_json::to_value(comparison).unwrap();
+        json.as_object().unwrap().keys().cloned().collect()
+    };
+    let mut old = keys(&compare(&two, &four).unwrap());
+    old.sort();
+    assert_eq!(old, ["max_difference", "mean_flip", "psnr", "rmse"]);
+    let new = keys(&compare_linear(&two, &four).unwrap());
+    for key in ["relative_rmse", "max_linear_difference", "mean_hdr_flip", "hdr_exposures"] {
+        assert!(new.iter().any(|other| other == key), "{new:?}");
+    }
 }

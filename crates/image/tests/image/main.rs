@@ -4,4 +4,5 @@ mod comparison;
 mod formats;
 mod parts;
 mod pictures;
+mod reading;
 mod saving;

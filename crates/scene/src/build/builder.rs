@@ -102,13 +102,15 @@ impl SceneBuilder {
         self.triangles[triangles].iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
 
-    /// The object of some triangles, if they have one.
-    pub(crate) fn object_of(&self, triangles: &Range<usize>) -> Option<&str> {
-        let (first, last) = (self.objects.of(triangles.start as u32), self.objects.of(triangles.end as u32 - 1));
-        let (starts, _) = self.objects.runs();
-        let begins = starts.partition_point(|&start| start as usize <= triangles.start);
-        let is_one = starts.get(begins).is_none_or(|&next| next as usize >= triangles.end);
-        (is_one && first == last && !starts.is_empty()).then(|| self.objects.name(first))
+    /// The objects of some triangles, each with a run of them; none if nothing was named.
+    pub(crate) fn objects_of(&self, triangles: &Range<usize>) -> Vec<(Range<usize>, String)> {
+        let (starts, objects) = self.objects.runs();
+        let ends = starts.iter().skip(1).map(|&start| start as usize).chain([usize::MAX]);
+        let runs = starts.iter().zip(ends).zip(objects).map(|((&start, end), &object)| {
+            let run = triangles.start.max(start as usize)..triangles.end.min(end);
+            (run, self.objects.name(object).to_owned())
+        });
+        runs.filter(|(run, _)| !run.is_empty()).collect()
     }
 
     /// Number of places of shapes so far.

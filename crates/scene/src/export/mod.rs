@@ -12,7 +12,7 @@ mod error;
 mod glb;
 mod info;
 mod lights;
-mod pictures;
+mod lost;
 mod text;
 
 use std::io;
@@ -44,6 +44,30 @@ impl Scene {
             files.push(Ready::with(path, &glb::encode(self, glb::Content::Everything, path)?)?);
         }
         Ok(publish(files)?)
+    }
+
+    /// What a file that [`Scene::export`] writes to `path` does not keep, and what of a `.glb` other programs show otherwise: a sentence for each
+    /// kind. What glTF has no words for is in its `extras`, where it is found again when this crate reads the file.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Light, Scene, glam::Vec3};
+    ///
+    /// let mut scene = Scene::open("builtin:gazebo")?;
+    /// scene.lights.push(Light::point(Vec3::Y));
+    /// let warnings = scene.export_warnings("gazebo.glb")?;
+    /// assert!(warnings.iter().any(|warning| warning.contains("inverse-square falloff")));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`ExportError::UnknownFormat`]
+    pub fn export_warnings(&self, path: impl AsRef<Path>) -> Result<Vec<String>, ExportError> {
+        let mut warnings = lost::always(self);
+        if Scene::export_mesh(path)?.is_none() {
+            warnings.extend(lost::to_others(self));
+        }
+        Ok(warnings)
     }
 
     /// The bytes that [`Scene::export`] would write as `.glb`.

@@ -65,11 +65,11 @@ impl Draft {
         !self.animation.rig.scales(node)
     }
 
-    /// The object of a shape, if all of it belongs to one.
-    pub(crate) fn object_of(&mut self, shape: &Range<usize>) -> Option<String> {
+    /// The objects of a shape, each with a run of its triangles; none if nothing in it was named.
+    pub(crate) fn objects_of(&mut self, shape: &Range<usize>) -> Vec<(Range<usize>, String)> {
         self.builder.exchange_shapes(&mut self.beside_shape);
-        let object = self.builder.object_of(shape).map(str::to_owned);
+        let objects = self.builder.objects_of(shape);
         self.builder.exchange_shapes(&mut self.beside_shape);
-        object
+        objects
     }
 }

@@ -39,6 +39,9 @@ pub(crate) struct MaterialExtras {
     /// The same for the image of how rough and metallic facets are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) metallic_roughness_transform: Option<[f32; 6]>,
+    /// The image that tints the surface, unless it is that of the base colour, in which other programs find the opacity, too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) color: Option<ColorExtras>,
     /// Where the surface is, and what it lets through, unless `alphaMode` says so.
     #[serde(default, alias = "cut_out", skip_serializing_if = "Option::is_none")]
     pub(crate) opacity: Option<OpacityExtras>,
@@ -90,6 +93,18 @@ impl From<DielectricExtras> for Dielectric {
     fn from(DielectricExtras { ior, thin, absorption }: DielectricExtras) -> Dielectric {
         Dielectric::new(ior).with_thin(thin).with_absorption(absorption)
     }
+}
+
+/// An image that tints a surface, or none.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ColorExtras {
+    /// Index of the file's texture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) texture: Option<u32>,
+    /// The transform from texture coordinates to the image's, by columns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) transform: Option<[f32; 6]>,
 }
 
 /// An opacity by something else than the alpha of the base colour.
@@ -165,6 +180,12 @@ pub(crate) struct LightExtras {
     /// Falloff `none`; else inverse-square, as in glTF.
     #[serde(default)]
     pub(crate) no_falloff: bool,
+    /// Without falloff: the candela or lux that stand for an intensity of 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) unit: Option<f64>,
+    /// Whether the camera sees a light with an area.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) visible: bool,
 }
 
 /// The shape of a light that is a point in glTF.

@@ -23,7 +23,11 @@ pub(super) fn read(
     own: &LightExtras,
 ) -> Result<Option<Light>, LoadError> {
     let color = light.color.as_deref().map_or(DVec3::ONE, |&color| color.into());
-    let intensity = (light.intensity.unwrap_or(1.0) * color).as_vec3();
+    let unit = own.unit.filter(|_| own.no_falloff).unwrap_or(1.0);
+    if !(unit > 0.0 && unit.is_finite()) {
+        return Err(malformed(path, format!("light {index} has extras.lightmesh.unit = {unit}")));
+    }
+    let intensity = (light.intensity.unwrap_or(1.0) * color / unit).as_vec3();
     if !(intensity.is_finite() && intensity.cmpge(Vec3::ZERO).all()) {
         return Err(malformed(path, format!("light {index} has the intensity {intensity}")));
     }
@@ -46,7 +50,7 @@ pub(super) fn read(
         falloff: if own.no_falloff { Falloff::None } else { Falloff::InverseSquare },
         surface: None,
         lamp: false,
-        visible: false,
+        visible: own.visible,
         motion: None,
     };
     Ok(Some(light.with_one_sided(own.one_sided)))

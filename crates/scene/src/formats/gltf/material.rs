@@ -10,7 +10,7 @@ use glam::{Affine2, Vec3};
 use super::{
     container::malformed,
     document::{self, MaterialExtensions, MetallicRoughness, NormalTexture, TextureInfo, Transmission, Volume},
-    extras::{self, MaterialExtras, OpacityExtras},
+    extras::{self, ColorExtras, MaterialExtras, OpacityExtras},
     left_out::LeftOut,
 };
 use crate::{LoadError, Material, Opacity, OpacityMode, Principled, TextureUse};
@@ -79,6 +79,16 @@ pub(super) fn opacity_extras(
 ) -> Result<Option<OpacityExtras>, LoadError> {
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
     Ok(own.and_then(|own| own.opacity))
+}
+
+/// The image that tints it, if our own extras specify it.
+pub(super) fn color_extras(
+    path: &Path,
+    index: usize,
+    of: &document::Material,
+) -> Result<Option<ColorExtras>, LoadError> {
+    let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
+    Ok(own.and_then(|own| own.color))
 }
 
 /// Counts the properties of the material that are not shown.

@@ -6,7 +6,7 @@ use glam::Affine2;
 
 use super::{
     document::{self, Document, Primitive, TextureInfo},
-    extras::OpacityExtras,
+    extras::{ColorExtras, OpacityExtras},
     left_out::LeftOut,
     material,
     picture::Pictures,
@@ -23,6 +23,13 @@ pub(super) struct Materials {
     read: Vec<Read>,
     /// Index of glTF's own default material, once a primitive has used it.
     default: Option<u32>,
+}
+
+/// The image of our own extras, with the set of texture coordinates.
+fn color(own: &ColorExtras, pictures: &mut Pictures, draft: &mut Draft) -> Option<(TextureUse, u32)> {
+    let (uses, set) = pictures.find(&TextureInfo { index: own.texture?, tex_coord: 0, extensions: None }, draft)?;
+    let transform = own.transform.map_or(Affine2::IDENTITY, |columns| Affine2::from_cols_array(&columns));
+    Some((TextureUse { transform, ..uses }, set))
 }
 
 /// What our own extras say.
@@ -100,7 +107,10 @@ impl Materials {
         for (index, entry) in document.materials.iter().enumerate() {
             material::count_left_out(entry, left_out);
             let info = entry.pbr_metallic_roughness.as_deref().and_then(|pbr| pbr.base_color_texture.as_ref());
-            let found = info.and_then(|info| pictures.find(info, draft));
+            let found = match material::color_extras(path, index, entry)? {
+                Some(own) => color(&own, &mut pictures, draft),
+                None => info.and_then(|info| pictures.find(info, draft)),
+            };
             let material = material::read(path, index, entry)?;
             let (mut texture, mut set) = found.unzip();
             let (mut emission, mut emission_texture) = (material.emission, None);

@@ -126,6 +126,9 @@ fn middle(shape: &Shape, transform: &DMat4) -> DVec3 {
     0.5 * (low + high)
 }
 
+/// A shape of more objects is placed as a whole, under the name of its file.
+const MOST_OBJECTS: usize = 64;
+
 /// What makes tables place the same shape: the file, the material, and whether they mirror.
 type ShapeKey = (String, Option<String>, bool);
 
@@ -175,12 +178,18 @@ impl Repeats {
         };
         let Some(shape) = shape else { return Ok(false) };
         let stem = || Path::new(entry.file.get_ref()).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let object = match &entry.name {
-            Some(name) => name.get_ref().clone(),
-            None => draft.object_of(&shape).unwrap_or_else(stem),
+        let objects = match &entry.name {
+            Some(_) => Vec::new(),
+            None => draft.objects_of(&shape),
+        };
+        // Objects keep their names where they are not very many: each is placed by itself.
+        let objects = match objects.len() {
+            1..=MOST_OBJECTS => objects,
+            _ => vec![(shape, entry.name.as_ref().map_or_else(stem, |name| name.get_ref().clone()))],
         };
         let held = draft.mover.map(|node| (node, *transform));
-        Ok(draft.place(shape, transform, Some(&object), held))
+        // What cannot be placed so is so already for the first one.
+        Ok(objects.into_iter().all(|(triangles, object)| draft.place(triangles, transform, Some(&object), held)))
     }
 
     /// Notes how many triangles a copy has added.

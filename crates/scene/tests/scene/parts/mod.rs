@@ -9,6 +9,7 @@ mod draft;
 mod environment;
 mod error;
 mod export;
+mod exported;
 mod file_access;
 mod formats;
 mod framing;

@@ -1,1 +1,2 @@
 mod flip;
+mod hdr_flip;

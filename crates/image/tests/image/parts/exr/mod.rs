@@ -258,13 +258,13 @@ fn a_file_without_colour_is_refused_by_its_channels() {
     use ::exr::prelude::{AnyChannel, AnyChannels};
     use ::exr::prelude::{FlatSamples, Image, WritableImage};
 
-    let grey = |name: &str| {
-        let channel = AnyChannel::new(name, FlatSamples::F32(vec![0.25; 6]));
+    let grey = |names: &[&str]| {
+        let channel = |&name: &&str| AnyChannel::new(name, FlatSamples::F32(vec![0.25; 6]));
         let mut output = Cursor::new(Vec::new());
-        let channels = AnyChannels::sort([channel].into_iter().collect());
+        let channels = AnyChannels::sort(names.iter().map(channel).collect());
         Image::from_channels((3, 2), channels).write().to_buffered(&mut output).unwrap();
         output.into_inner()
     };
-    assert_eq!(read(&grey("Y")).unwrap().color(), [[0.25; 3]; 6]);
-    assert_eq!(read(&grey("depth")), Err(DecodeError::Channels { found: "depth".to_owned() }));
+    assert_eq!(read(&grey(&["Y"])).unwrap().color(), [[0.25; 3]; 6]);
+    assert_eq!(read(&grey(&["depth", "other"])), Err(DecodeError::Channels { found: "depth, other".to_owned() }));
 }

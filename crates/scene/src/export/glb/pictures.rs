@@ -11,19 +11,29 @@ use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use serde_json::{Value, json};
 
 use crate::formats::gltf::affine;
-use crate::{Scene, Texture, TextureUse, Wrap};
+use crate::{Material, Opacity, OpacityChannel, Scene, Texture, TextureUse, Wrap};
 
 /// The textures of a scene, as stored in a GLB.
 #[derive(Default)]
 pub(super) struct Pictures {
     /// PNG files, in the order of the scene's textures; none if no material can use it.
     files: Vec<Option<Vec<u8>>>,
+    /// Images with colours of one texture and opacities of another, which come after them.
+    composed: Vec<Composed>,
     /// How texels are looked up beyond the edge.
     samplers: Distinct<[Wrap; 2]>,
     /// Image and sampler of each glTF texture.
     textures: Distinct<(usize, usize)>,
     by_material: Vec<MaterialPictures>,
     transformed: bool,
+}
+
+/// Colours with opacities.
+struct Composed {
+    /// The textures of the scene, and what of the second one is the opacity.
+    of: (Option<u32>, Option<(u32, OpacityChannel)>),
+    name: String,
+    file: Vec<u8>,
 }
 
 /// A glTF texture, and how it is used.
@@ -36,12 +46,14 @@ struct MaterialPictures {
     normals: Option<Picture>,
     roughness: Option<Picture>,
     opacity: Option<Picture>,
+    /// Colours with opacities, for other programs.
+    shown: Option<Picture>,
 }
 
 impl MaterialPictures {
     /// Those that glTF has a place for.
     fn standard(&self) -> [Option<Picture>; 4] {
-        [self.color, self.emission, self.normals, self.roughness]
+        [self.shown.or(self.color), self.emission, self.normals, self.roughness]
     }
 }
 
@@ -56,6 +68,7 @@ impl Pictures {
                 normals: pictures.find(scene, material.normal_texture.map(|map| map.uses))?,
                 roughness: pictures.find(scene, material.metallic_roughness_texture)?,
                 opacity: pictures.find(scene, material.opacity.and_then(|opacity| opacity.texture))?,
+                shown: pictures.compose(scene, material)?,
             };
             let is_placed = |(_, uses): Picture| uses.transform != Affine2::IDENTITY;
             pictures.transformed |= own.standard().into_iter().flatten().any(is_placed);
@@ -83,9 +96,51 @@ impl Pictures {
         Ok(self.textures.index_of((uses.texture as usize, sampler)))
     }
 
+    /// The image in which other programs find both colours and opacities of a material that has them apart: in the places of both, which must
+    /// be the same, and with as many texels as the larger one.
+    fn compose(&mut self, scene: &Scene, material: &Material) -> io::Result<Option<Picture>> {
+        let Some(opacity) = material.opacity.filter(|opacity| needs_composing(opacity, material)) else {
+            return Ok(None);
+        };
+        let texture = |uses: Option<TextureUse>| {
+            let texture = scene.geometry.textures.get(uses?.texture as usize)?;
+            is_whole(texture).then_some(texture)
+        };
+        let (colors, opacities) = (texture(material.texture), texture(opacity.texture));
+        let Some(uses) = material.texture.or(opacity.texture) else { return Ok(None) };
+        if colors.is_none() && opacities.is_none() {
+            return Ok(None);
+        }
+        let of = (
+            colors.and(material.texture).map(|uses| uses.texture),
+            opacities.and(opacity.texture).map(|uses| (uses.texture, opacity.channel)),
+        );
+        let known = self.composed.iter().position(|composed| composed.of == of);
+        let number = match known {
+            Some(known) => known,
+            None => {
+                let names = [colors, opacities].map(|texture| texture.map_or("opaque", |texture| &texture.name));
+                let name =
+                    format!("{} with opacity of {}", if colors.is_some() { names[0] } else { "white" }, names[1]);
+                let file = png(&composed(colors, opacities, opacity.channel))?;
+                self.composed.push(Composed { of, name, file });
+                self.composed.len() - 1
+            }
+        };
+        let sampler = self.samplers.index_of(uses.wrap);
+        Ok(Some((self.textures.index_of((self.files.len() + number, sampler)), uses)))
+    }
+
     /// The `baseColorTexture` of a material.
     pub(super) fn of_material(&self, index: usize) -> Option<Value> {
-        Some(info(self.by_material[index].color?))
+        let own = &self.by_material[index];
+        Some(info(own.shown.or(own.color)?))
+    }
+
+    /// Whether the base colour's texture is not only that of the colours, but also of opacities; then that of the colours.
+    pub(super) fn apart(&self, index: usize) -> Option<Option<Picture>> {
+        let own = &self.by_material[index];
+        own.shown.map(|_| own.color)
     }
 
     /// The `emissiveTexture` of a material.
@@ -129,12 +184,13 @@ impl Pictures {
             return;
         }
         let mut images = Vec::new();
-        let mut place = vec![0; self.files.len()];
-        for (index, file) in self.files.into_iter().enumerate() {
+        let own = self.files.into_iter().zip(scene.geometry.textures.iter().map(|texture| texture.name.clone()));
+        let composed = self.composed.into_iter().map(|Composed { name, file, .. }| (Some(file), name));
+        let mut place = Vec::new();
+        for (file, name) in own.chain(composed) {
+            place.push(images.len());
             let (Some(file), Some(views)) = (file, root["bufferViews"].as_array_mut()) else { continue };
-            place[index] = images.len();
-            images
-                .push(json!({"name": scene.geometry.textures[index].name, "mimeType": "image/png", "bufferView": views.len()}));
+            images.push(json!({"name": name, "mimeType": "image/png", "bufferView": views.len()}));
             views.push(json!({"buffer": 0, "byteOffset": bin.len(), "byteLength": file.len()}));
             bin.extend(file);
         }
@@ -183,6 +239,32 @@ fn info((texture, uses): Picture) -> Value {
     info
 }
 
+/// Whether opacities are not what glTF takes for them, the alpha of the base colour, but can be put there.
+pub(super) fn needs_composing(opacity: &Opacity, material: &Material) -> bool {
+    let is_alpha = opacity.texture.is_none() || opacity.channel == OpacityChannel::Alpha;
+    let is_standard = is_alpha && opacity.texture == material.texture;
+    let is_there_too = |(colors, opacities): (TextureUse, TextureUse)| {
+        (colors.wrap, colors.transform) == (opacities.wrap, opacities.transform)
+    };
+    material.dielectric.is_none() && !is_standard && material.texture.zip(opacity.texture).is_none_or(is_there_too)
+}
+
+/// The colours of one texture, or white, with opacities of another, or 1.
+fn composed(colors: Option<&Texture>, opacities: Option<&Texture>, channel: OpacityChannel) -> Texture {
+    let side = |axis: usize| [colors, opacities].iter().flatten().map(|texture| texture.size[axis]).max().unwrap_or(1);
+    let size = [side(0), side(1)];
+    let texel = |texture: &Texture, x: u32, y: u32| {
+        let at = |axis: usize, place: u32| u64::from(place) * u64::from(texture.size[axis]) / u64::from(size[axis]);
+        texture.texels[(at(1, y) * u64::from(texture.size[0]) + at(0, x)) as usize]
+    };
+    let of_both = |(x, y): (u32, u32)| {
+        let [r, g, b, _] = colors.map_or([u8::MAX; 4], |colors| texel(colors, x, y));
+        [r, g, b, opacities.map_or(u8::MAX, |opacities| OpacityChannel::of(texel(opacities, x, y), channel))]
+    };
+    let places = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    Texture { name: String::new(), size, texels: places.map(of_both).collect() }
+}
+
 fn is_whole(texture: &Texture) -> bool {
     let texels = u64::from(texture.size[0]) * u64::from(texture.size[1]);
     texels > 0 && texels == texture.texels.len() as u64
@@ -198,7 +280,7 @@ fn png(texture: &Texture) -> io::Result<Vec<u8>> {
 }
 
 /// Scale, angle and offset of KHR_texture_transform.
-fn parts(transform: &Affine2) -> (Vec2, f32, Vec2) {
+pub(in crate::export) fn parts(transform: &Affine2) -> (Vec2, f32, Vec2) {
     let (x, y) = (transform.matrix2.x_axis, transform.matrix2.y_axis);
     if x.y == 0.0 && y.x == 0.0 {
         return (Vec2::new(x.x, y.y), 0.0, transform.translation);
