@@ -49,20 +49,50 @@ impl<'a> Accessors<'a> {
     where
         [f32; N]: AnyBitPattern,
     {
-        let elements = self.elements(index)?;
+        self.numbers_of(index, &self.elements(index)?, used)
+    }
+
+    /// The same of integers that are always mapped.
+    fn shares<const N: usize>(&self, index: u32, used: Used) -> Result<Cow<'a, [[f32; N]]>, LoadError>
+    where
+        [f32; N]: AnyBitPattern,
+    {
+        let mut elements = self.elements(index)?;
+        let stored = elements.base.iter_mut().chain(elements.sparse.as_mut().map(|(_, values)| values));
+        stored.for_each(|stored| stored.normalized = true);
+        self.numbers_of(index, &elements, used)
+    }
+
+    fn numbers_of<const N: usize>(
+        &self,
+        index: u32,
+        elements: &Elements<'a>,
+        used: Used,
+    ) -> Result<Cow<'a, [[f32; N]]>, LoadError>
+    where
+        [f32; N]: AnyBitPattern,
+    {
         if dimensions(elements.kind) != Some(N) {
             return Err(self.broken(index, &format!("has type {} where VEC{N} is expected", quote(elements.kind))));
         }
         let is_float = elements.component == Component::F32;
-        self.read(index, &elements, used, [0.0; N], is_float, |elements| elements.numbers())
+        self.read(index, elements, used, [0.0; N], is_float, |elements| elements.numbers())
     }
 
-    /// Colours with or without alpha, which is left out. Clamped to [0, 1], as glTF requires; NaN counts as 0.
+    /// Whether integers that must be normalized are not.
+    pub(super) fn is_raw(&self, index: u32) -> Result<bool, LoadError> {
+        let elements = self.elements(index)?;
+        let stored = elements.base.iter().chain(elements.sparse.as_ref().map(|(_, values)| values));
+        Ok(elements.component != Component::F32 && stored.into_iter().any(|stored| !stored.normalized))
+    }
+
+    /// Colours with or without alpha, which is left out. Clamped to [0, 1], as glTF requires; NaN counts as 0. Integers are mapped to this range
+    /// whether the accessor is normalized, as it has to be, or not.
     pub(super) fn colors(&self, index: u32, used: Used) -> Result<Cow<'a, [[f32; 3]]>, LoadError> {
         let mut colors = if self.elements(index)?.kind == "VEC4" {
-            self.vectors(index, used)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
+            self.shares(index, used)?.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
         } else {
-            self.vectors(index, used)?
+            self.shares(index, used)?
         };
         if colors.as_flattened().iter().any(|channel| !(0.0..=1.0).contains(channel)) {
             for channel in colors.to_mut().as_flattened_mut() {
@@ -81,7 +111,7 @@ impl<'a> Accessors<'a> {
         }
         // NaN counts as 0.
         let opacity = |&[.., alpha]: &[f32; 4]| if alpha > 0.0 { alpha.min(1.0) } else { 0.0 };
-        let opacities: Vec<f32> = self.vectors::<4>(index, used)?.iter().map(opacity).collect();
+        let opacities: Vec<f32> = self.shares::<4>(index, used)?.iter().map(opacity).collect();
         Ok(if opacities.iter().all(|&opacity| opacity == 1.0) { Vec::new() } else { opacities })
     }
 

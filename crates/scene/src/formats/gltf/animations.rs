@@ -68,7 +68,8 @@ pub(super) fn read(accessors: &Accessors, wanted: Option<&str>, left_out: &mut L
     for (index, animation) in accessors.document.animations.iter().enumerate() {
         let name = animation.name.as_deref().filter(|name| !name.is_empty());
         let name = name.map_or_else(|| format!("animation {index}"), str::to_owned);
-        let targets: Vec<(u32, Path)> = animation.channels.iter().filter_map(target).collect();
+        let mut targets: Vec<(u32, Path)> = animation.channels.iter().filter_map(target).collect();
+        let unknown = animation.channels.len() - targets.len();
         let is_played = match wanted {
             Some(wanted) => name == wanted && played.names.is_empty(),
             None => !targets.iter().any(|target| taken.contains(target)),
@@ -77,10 +78,15 @@ pub(super) fn read(accessors: &Accessors, wanted: Option<&str>, left_out: &mut L
             played.others.push(name);
             continue;
         }
-        left_out.unknown_channels += animation.channels.len() - targets.len();
+        left_out.unknown_channels += unknown;
+        let nodes = accessors.document.nodes.len();
+        targets.iter().filter(|&&(node, _)| node as usize >= nodes).for_each(|&(node, _)| {
+            left_out.lost_channels.add(node as usize, None);
+        });
+        targets.retain(|&(node, _)| (node as usize) < nodes);
         taken.extend(targets);
         played.names.push(name);
-        Reader { accessors, animation, index, known: BTreeMap::new() }.read(&mut played)?;
+        Reader { accessors, animation, index, known: BTreeMap::new() }.read(&mut played, left_out)?;
     }
     Ok(played)
 }
@@ -95,14 +101,19 @@ struct Reader<'a, 'd> {
     animation: &'a Animation<'d>,
     index: usize,
     /// Tracks by sampler, and whether they are read as rotations.
-    known: BTreeMap<(u32, usize), Arc<Track>>,
+    known: BTreeMap<(u32, usize), Option<Arc<Track>>>,
 }
 
 impl Reader<'_, '_> {
-    fn read(mut self, played: &mut Played) -> Result<(), LoadError> {
+    fn read(mut self, played: &mut Played, left_out: &mut LeftOut) -> Result<(), LoadError> {
+        let nodes = &self.accessors.document.nodes;
         for channel in &*self.animation.channels {
             let Some((node, path)) = target(channel) else { continue };
-            let track = self.track(channel.sampler, path)?;
+            let Some(moved) = nodes.get(node as usize) else { continue };
+            let Some(track) = self.track(channel.sampler, path)? else {
+                left_out.undefined_keys.add(node as usize, moved.name.as_deref());
+                continue;
+            };
             played.duration = played.duration.max(track.end());
             let tracks = played.tracks.entry(node).or_default();
             let slot = match path {
@@ -116,8 +127,8 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// The keys of a sampler, which several channels may share.
-    fn track(&mut self, sampler: u32, path: Path) -> Result<Arc<Track>, LoadError> {
+    /// The keys of a sampler, which several channels may share; `None` if some are no numbers.
+    fn track(&mut self, sampler: u32, path: Path) -> Result<Option<Arc<Track>>, LoadError> {
         let kind = |width: usize| if path == Path::Rotation { Kind::Rotations } else { Kind::Numbers(width) };
         let of_path = match path {
             Path::Translation | Path::Scale => 3,
@@ -125,7 +136,7 @@ impl Reader<'_, '_> {
             Path::Weights => 1,
         };
         if let Some(known) = self.known.get(&(sampler, of_path)) {
-            return Ok(Arc::clone(known));
+            return Ok(known.clone());
         }
         let keys = self.animation.samplers.get(sampler as usize);
         let keys = keys.ok_or_else(|| self.damaged(sampler, "does not exist, but is referenced"))?;
@@ -144,6 +155,10 @@ impl Reader<'_, '_> {
         if width == 0 || values.len() != parts * width * times.len() {
             return Err(self.damaged(sampler, "does not have one value for each key"));
         }
+        if !values.iter().all(|value| value.is_finite()) {
+            self.known.insert((sampler, of_path), None);
+            return Ok(None);
+        }
         let kind = kind(width);
         let track = match interpolation {
             "CUBICSPLINE" => Track::with_slopes(kind, times, &values),
@@ -151,8 +166,8 @@ impl Reader<'_, '_> {
             "STEP" => Track::new(kind, times, values, Interpolation::Step),
             other => return Err(self.damaged(sampler, &format!("has the interpolation `{}`", quote(other)))),
         };
-        let track = Arc::new(track.map_err(|problem| self.damaged(sampler, problem))?);
-        self.known.insert((sampler, of_path), Arc::clone(&track));
+        let track = Some(Arc::new(track.map_err(|problem| self.damaged(sampler, problem))?));
+        self.known.insert((sampler, of_path), track.clone());
         Ok(track)
     }
 

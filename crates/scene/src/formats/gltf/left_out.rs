@@ -4,6 +4,35 @@ use std::path::Path;
 
 use super::nodes::Placed;
 use crate::build::draft::Draft;
+use crate::build::quote::quote;
+
+/// Nodes with content that cannot be as it is stored: the first of them, and how many there are.
+#[derive(Default)]
+pub(super) struct Odd {
+    first: String,
+    count: usize,
+}
+
+impl Odd {
+    /// One more, with the number and the name of a node.
+    pub(super) fn add(&mut self, number: usize, name: Option<&str>) {
+        if self.count == 0 {
+            let name = name.filter(|name| !name.is_empty()).map(|name| format!(" (`{}`)", quote(name)));
+            self.first = format!("node {number}{}", name.unwrap_or_default());
+        }
+        self.count += 1;
+    }
+
+    fn told(&self, outcome: &str) -> Option<String> {
+        let Odd { first, count } = self;
+        match count {
+            0 => None,
+            1 => Some(format!("{first}: {outcome}")),
+            2 => Some(format!("{first} and another: {outcome}")),
+            count => Some(format!("{first} and {} others: {outcome}", count - 1)),
+        }
+    }
+}
 
 /// How often each kind occurred.
 #[derive(Default)]
@@ -17,6 +46,14 @@ pub(super) struct LeftOut {
     pub(super) placeless: usize,
     /// Channels of animations that move nothing glTF itself defines.
     pub(super) unknown_channels: usize,
+    /// Channels of animations that move nodes that the file does not contain.
+    pub(super) lost_channels: Odd,
+    /// Channels of animations with keys that are no numbers.
+    pub(super) undefined_keys: Odd,
+    /// Skinned primitives with vertices that no joint holds.
+    pub(super) unheld: Odd,
+    /// Primitives with colours as integers that are not normalised.
+    pub(super) integer_colors: Odd,
     /// Primitives whose material does not exist.
     pub(super) missing_materials: usize,
     /// Materials with an `alphaMode` that glTF does not define.
@@ -87,5 +124,15 @@ impl LeftOut {
             };
             draft.warnings.push(format!("{path}: {count} {what}{plural} {outcome}"));
         }
+        let odd = [
+            (&self.lost_channels, "an animation moves it, but the file does not contain it: ignored"),
+            (
+                &self.undefined_keys,
+                "an animation has keys with infinite or undefined values: what they move stays at rest",
+            ),
+            (&self.unheld, "vertices have weights of joints that are all 0 or undefined: they go with the first joint"),
+            (&self.integer_colors, "vertex colours are integers that are not normalized: taken as if they were"),
+        ];
+        draft.warnings.extend(odd.iter().filter_map(|(odd, outcome)| Some(format!("{path}: {}", odd.told(outcome)?))));
     }
 }

@@ -141,7 +141,7 @@ impl<'a> Meshes<'a> {
             let mut add = |shown: &Shown, instances: Option<&Instances>, draft: &mut Draft| -> Result<(), LoadError> {
                 for &(primitive, mode) in &survey.primitives {
                     let chosen = materials.choose(primitive, left_out, draft);
-                    self.add_primitive(primitive, mode, &chosen, shown, instances, rigged, draft)?;
+                    self.add_primitive(primitive, mode, &chosen, shown, instances, rigged, left_out, draft)?;
                 }
                 Ok(())
             };
@@ -217,6 +217,7 @@ impl<'a> Meshes<'a> {
         shown: &Shown,
         instances: Option<&Instances>,
         rigged: &Rigged,
+        left_out: &mut LeftOut,
         draft: &mut Draft,
     ) -> Result<(), LoadError> {
         let accessors = &self.accessors;
@@ -231,6 +232,9 @@ impl<'a> Meshes<'a> {
         let normals = primitive.attributes.normal.map_or_else(none, |index| accessors.vectors::<3>(index, used))?;
         let uvs = chosen.uvs.map_or_else(|| Ok(Cow::default()), |index| accessors.vectors::<2>(index, used))?;
         let colors = chosen.colors.map_or_else(none, |index| accessors.colors(index, used))?;
+        if chosen.colors.map_or(Ok(false), |index| accessors.is_raw(index))? {
+            left_out.integer_colors.add(shown.node.0, shown.node.1);
+        }
         let opacities = match chosen.opacities {
             Some(index) => accessors.opacities(index, used)?,
             None => Vec::new(),
@@ -246,6 +250,11 @@ impl<'a> Meshes<'a> {
         if shown.bends.bend(primitive) {
             draft.check_bends(used.map_or(vertices, <[u32]>::len), primitive.targets.len())?;
             let bent = self.bent(primitive, shown, vertices, used, &part, rigged)?;
+            if let Hold::Skin(_, influences) = &bent.1
+                && influences.leave_any()
+            {
+                left_out.unheld.add(shown.node.0, shown.node.1);
+            }
             return add_bent(part, bent, &shown.bends, chosen.material, rigged, draft);
         }
         let mover = if shown.moves { rigged.mover(shown.node.0) } else { None };

@@ -177,6 +177,11 @@ impl Placing<'_> {
 }
 
 impl Influences {
+    /// Whether no joint holds some vertex.
+    pub(crate) fn leave_any(&self) -> bool {
+        self.weights.chunks_exact(self.per_vertex).any(|own| own.iter().all(|&weight| weight == 0.0))
+    }
+
     /// The mean of the transforms of a vertex's joints by their weights, or that of the first joint if it has none.
     fn mixed(&self, vertex: usize, joints: &[DMat4]) -> DMat4 {
         let own = vertex * self.per_vertex..(vertex + 1) * self.per_vertex;

@@ -214,3 +214,34 @@ fn damaged_motion_is_an_error() {
     document["skins"][0]["joints"] = json!([1, 9]);
     assert!(error(&document).contains("joint 9, which is no node"), "{}", error(&document));
 }
+
+#[test]
+fn what_cannot_move_is_named() {
+    let mut document = triangle();
+    document["nodes"][0]["name"] = json!("door");
+    animate(&mut document, "a", 0, "scale", &[1.0, f32::NAN, 1.0, 2.0, 2.0, 2.0], "LINEAR");
+    animate(&mut document, "b", 999, "translation", &[0.0, 0.0, 0.0, 9.0, 9.0, 9.0], "LINEAR");
+    let warnings = warnings(&document);
+    let expected = [
+        "model.gltf: node 999: an animation moves it, but the file does not contain it: ignored",
+        "model.gltf: node 0 (`door`): an animation has keys with infinite or undefined values: what they move stays at rest",
+    ];
+    assert!(expected.iter().all(|warning| warnings.contains(warning)), "{warnings}");
+    let (scene, still) = (open(&document), open(&triangle()));
+    let moved = scene.at(1.0);
+    assert_eq!(moved.geometry.mesh.corners(0), still.geometry.mesh.corners(0));
+}
+
+#[test]
+fn vertices_that_no_joint_holds_are_named() {
+    for weight in [0.0, f32::NAN] {
+        let mut document = skinned();
+        assert!(!warnings(&document).contains("weights of joints"));
+        let weights = [weight, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+        let weights = add_accessor(&mut document, &bytes_of(&weights), 5126, "VEC4", 3);
+        document["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(weights);
+        let warnings = warnings(&document);
+        let expected = "model.gltf: node 0: vertices have weights of joints that are all 0 or undefined: they go with the first joint";
+        assert!(warnings.contains(expected), "{weight}: {warnings}");
+    }
+}

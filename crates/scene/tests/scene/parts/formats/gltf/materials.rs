@@ -435,3 +435,19 @@ fn the_material_of_a_scene_around_replaces_colours_too() {
     );
     assert_eq!(scene.geometry.mesh.uvs.len(), 3);
 }
+
+/// As glTF requires of colours, whether the accessor says so or not.
+#[test]
+fn integer_colours_are_normalized() {
+    let mut document = triangle();
+    let bytes = [255, 0, 51].repeat(3);
+    let colors = add_accessor(&mut document, &bytes, UNSIGNED_BYTE, "VEC3", 3);
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
+    let expected = "model.gltf: node 0: vertex colours are integers that are not normalized: taken as if they were";
+    assert!(warnings(&document).contains(expected), "{}", warnings(&document));
+    let of = |document: &Value| open(document).geometry.mesh.colors.clone();
+    assert_eq!(of(&document)[0], Vec3::new(1.0, 0.0, 0.2));
+    let raw = of(&document);
+    document["accessors"][colors]["normalized"] = json!(true);
+    assert_eq!((of(&document), warnings(&document).contains("normalized")), (raw, false));
+}
