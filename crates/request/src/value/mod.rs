@@ -37,6 +37,28 @@ pub enum ValueError {
         /// A valid example.
         example: &'static str,
     },
+    /// The text has too few parts, or too many.
+    #[error("it has {count} parts between commas instead of {form}, for instance {example}")]
+    Parts {
+        /// How many it has.
+        count: usize,
+        /// How many it should have, and what they are.
+        form: &'static str,
+        /// A valid example.
+        example: &'static str,
+    },
+    /// A part of the text cannot be read.
+    #[error("{what} {}: write {form}, for instance {example}", missing_or(text))]
+    Part {
+        /// What the part is.
+        what: &'static str,
+        /// The part, which may be empty.
+        text: String,
+        /// What it should be.
+        form: &'static str,
+        /// A valid example of it.
+        example: &'static str,
+    },
     /// A part of the text is not a number, or out of range of single precision.
     #[error("`{text}` is not a valid number: write a decimal number, for instance 0.5")]
     NotANumber {
@@ -62,4 +84,9 @@ pub enum ValueError {
     /// The camera has no direction.
     #[error("position and target are the same point: move one of them")]
     NoDirection,
+}
+
+/// What is wrong with a part.
+fn missing_or(text: &str) -> String {
+    if text.is_empty() { "is missing".to_owned() } else { format!("cannot be `{text}`") }
 }

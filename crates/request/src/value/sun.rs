@@ -32,10 +32,10 @@ pub struct SunSpec {
     pub step: u32,
 }
 
-const FORM: ValueError = ValueError::Form {
-    form: "LATITUDE,LONGITUDE,DATE with its offset from universal time or Z,FROM-TO/STEP in minutes (m) or hours (h)",
-    example: "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m",
-};
+/// An example of a whole day.
+const EXAMPLE: &str = "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m";
+/// The time by which a clock can differ from universal time.
+const MOST_OFFSET: i32 = 18 * 60;
 
 impl SunSpec {
     /// A minute of the day.
@@ -83,15 +83,26 @@ impl FromStr for SunSpec {
 
     fn from_str(text: &str) -> Result<SunSpec, ValueError> {
         let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-        let [latitude, longitude, day, hours] = parts[..] else { return Err(FORM) };
-        let (latitude, longitude) = (number(latitude)?, number(longitude)?);
-        let (date, zone) = day.split_at_checked("2026-06-21".len()).ok_or(FORM)?;
-        let midnight: Moment = format!("{date}T00:00{zone}").parse().map_err(|_| FORM)?;
+        let [latitude, longitude, day, hours] = parts[..] else {
+            return Err(ValueError::Parts {
+                count: if text.trim().is_empty() { 0 } else { parts.len() },
+                form: "four, LATITUDE,LONGITUDE,DATE with the offset from universal time,FROM-TO/STEP",
+                example: EXAMPLE,
+            });
+        };
+        let latitude = degrees("the latitude", latitude, 90.0, "degrees north from -90 to 90", "54.98")?;
+        let longitude = degrees("the longitude", longitude, 180.0, "degrees east from -180 to 180", "82.9")?;
+        let (date, offset) = day_and_offset(day)?;
         let (hours, step) = hours.split_once('/').map_or((hours, None), |(hours, step)| (hours, Some(step)));
-        let (first, last) = hours.split_once('-').ok_or(FORM)?;
-        let (from, to) = (minute(first).ok_or(FORM)?, minute(last).ok_or(FORM)?);
+        let (first, last) = hours.split_once('-').ok_or_else(|| {
+            part("the time of day", hours, "its beginning and its end with a minus sign between them", "06:00-20:00")
+        })?;
+        let time = |what, text, example| {
+            minute(text).ok_or_else(|| part(what, text, "hours and minutes of two digits each, up to 24:00", example))
+        };
+        let (from, to) = (time("the beginning", first, "06:00")?, time("the end", last, "20:00")?);
         let step = step.map_or(Ok(USUAL_STEP), minutes)?;
-        let spec = SunSpec { latitude, longitude, date: midnight.date, offset: midnight.offset, from, to, step };
+        let spec = SunSpec { latitude, longitude, date, offset, from, to, step };
         if from >= to {
             return Err(ValueError::OutOfRange {
                 what: "the end",
@@ -99,36 +110,100 @@ impl FromStr for SunSpec {
                 range: "a time of the same day after its beginning, up to 24:00; a night is two studies",
             });
         }
-        // The place and the date exist.
-        SunPosition::of(latitude, longitude, &spec.moment(0.0)).map_err(|problem| ValueError::Sun { problem })?;
+        // Its place in the sky is not known in all years.
+        SunPosition::of(latitude, longitude, &spec.moment(0.0))
+            .map_err(|_| part("the date", &spec.date(), "a day of the years from 0001 to 2999", "2026-06-21"))?;
         Ok(spec)
     }
+}
+
+/// What is wrong with a part of the text.
+fn part(what: &'static str, text: &str, form: &'static str, example: &'static str) -> ValueError {
+    ValueError::Part { what, text: text.trim().to_owned(), form, example }
+}
+
+/// Degrees of a place.
+fn degrees(
+    what: &'static str,
+    text: &str,
+    most: f64,
+    form: &'static str,
+    example: &'static str,
+) -> Result<f64, ValueError> {
+    let degrees = number(text).ok().filter(|degrees| degrees.abs() <= most);
+    degrees.ok_or_else(|| part(what, text, form, example))
+}
+
+/// Year, month and day, and the minutes by which the clock is ahead of universal time.
+fn day_and_offset(text: &str) -> Result<([u32; 3], i32), ValueError> {
+    // The date ends where an offset begins: at a sign, of which it has two itself, or at a letter.
+    let dashes = text.match_indices('-').nth(2).map(|(at, _)| at);
+    let end = text.find(|letter: char| letter == '+' || letter.is_alphabetic());
+    let end = dashes.into_iter().chain(end).min().unwrap_or(text.len());
+    let (day, offset) = text.split_at(end);
+    let date = date(day).ok_or_else(|| part("the date", day, "a day that exists, as YYYY-MM-DD", "2026-06-21"))?;
+    let offset = offset_in_minutes(offset.trim()).ok_or_else(|| {
+        part(
+            "the offset from universal time, right after the date,",
+            offset,
+            "a sign, hours and minutes, up to 18:00, or Z for universal time",
+            "2026-06-21+07:00",
+        )
+    })?;
+    Ok((date, offset))
+}
+
+/// Year, month and day of `YYYY-MM-DD`, if there is such a day.
+fn date(text: &str) -> Option<[u32; 3]> {
+    let mut parts = text.trim().split('-');
+    let [year, month, day] = [digits(parts.next()?, 4)?, digits(parts.next()?, 2)?, digits(parts.next()?, 2)?];
+    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let days = match month {
+        2 => 28 + u32::from(is_leap),
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    };
+    let exists = parts.next().is_none() && (1..=12).contains(&month) && (1..=days).contains(&day);
+    exists.then_some([year, month, day])
+}
+
+/// The minutes of `Z` or `±HH:MM`.
+fn offset_in_minutes(text: &str) -> Option<i32> {
+    if text.eq_ignore_ascii_case("z") {
+        return Some(0);
+    }
+    let sign = if text.starts_with('-') { -1 } else { 1 };
+    let (hours, minutes) = text.strip_prefix(['+', '-'])?.split_once(':')?;
+    let number = |text: &str| digits(text, 2).or_else(|| digits(text, 1));
+    let [hours, minutes] = [number(hours)?, number(minutes).filter(|&minutes| minutes < 60)?];
+    let offset = (60 * hours + minutes) as i32;
+    (offset <= MOST_OFFSET).then_some(sign * offset)
+}
+
+/// A number of so many digits.
+fn digits(text: &str, count: usize) -> Option<u32> {
+    (text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit())).then(|| text.parse().ok())?
 }
 
 /// The minute of the day of `HH:MM`.
 fn minute(text: &str) -> Option<u32> {
     let (hour, minute) = text.trim().split_once(':')?;
-    let two = |text: &str| {
-        (text.len() == 2 && text.bytes().all(|byte| byte.is_ascii_digit())).then(|| text.parse::<u32>().ok())?
-    };
-    let minute = Some(60 * two(hour)? + two(minute).filter(|&minute| minute < 60)?);
-    minute.filter(|&minute| minute <= DAY)
+    let minute = 60 * digits(hour, 2)? + digits(minute, 2).filter(|&minute| minute < 60)?;
+    (minute <= DAY).then_some(minute)
 }
 
 /// The minutes of a step.
 fn minutes(text: &str) -> Result<u32, ValueError> {
     let (number, unit) = number_and_unit(text);
     let unit = match unit {
-        "m" => 1.0,
-        "h" => 60.0,
-        _ => return Err(FORM),
+        "m" => Some(1.0),
+        "h" => Some(60.0),
+        _ => None,
     };
-    let minutes = unit * number.parse::<f64>().map_err(|_| FORM)?;
-    if minutes.fract() == 0.0 && (1.0..=f64::from(DAY)).contains(&minutes) {
-        return Ok(minutes as u32);
-    }
-    let text = text.trim().to_owned();
-    Err(ValueError::OutOfRange { what: "the step", text, range: "whole minutes, from 1m to 24h" })
+    let minutes = unit.zip(number.parse::<f64>().ok()).map(|(unit, number)| unit * number);
+    let whole = minutes.filter(|minutes| minutes.fract() == 0.0 && (1.0..=f64::from(DAY)).contains(minutes));
+    let form = "whole minutes (m) or hours (h), from 1m to 24h";
+    whole.map(|minutes| minutes as u32).ok_or_else(|| part("the step", text, form, "15m"))
 }
 
 #[cfg(test)]
@@ -156,6 +231,7 @@ mod tests {
             ("54.98,82.9,2026-06-21+07:00,06:00-20:00", "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m"),
             (" -33.9, 151.2 , 2026-12-21+11:00 , 00:00-24:00 / 1.5h", "-33.9,151.2,2026-12-21+11:00,00:00-24:00/90m"),
             ("1,2,2026-06-21-09:30,23:59-24:00/1m", "1,2,2026-06-21-09:30,23:59-24:00/1m"),
+            ("1,2,2026-06-21+7:00,06:00-20:00/1h", "1,2,2026-06-21+07:00,06:00-20:00/60m"),
             ("1,2,2026-06-21z,00:00-12:00/24h", "1,2,2026-06-21Z,00:00-12:00/1440m"),
         ] {
             assert_eq!(spec(text).unwrap().to_string(), shown);
@@ -164,40 +240,51 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_day_says_what_is() {
-        for text in [
-            "",
-            "1,2,2026-06-21Z",
-            "1,2,2026-06-21Z,06:00-20:00/15m,3",
-            "1,2,2026-06-21,06:00-20:00/15m",
-            "1,2,2026-6-21Z,06:00-20:00/15m",
-            "1,2,2026-06-21+7,06:00-20:00/15m",
-            "1,2,2026-06-21+19:00,06:00-20:00/15m",
-            "1,2,2026-06-21Z,6-20/15m",
-            "1,2,2026-06-21Z,06:00/15m",
-            "1,2,2026-06-21Z,06:60-20:00/15m",
-            "1,2,2026-06-21Z,06:00-24:01/15m",
-            "1,2,2026-06-21Z,06:00-20:00/15",
-            "1,2,2026-06-21Z,06:00-20:00/15s",
-            "1,2,2026-06-2äZ,06:00-20:00/15m",
-        ] {
-            let error = spec(text).unwrap_err();
-            assert!(error.contains("for instance 54.98,82.9,2026-06-21+07:00,06:00-20:00/15m"), "{text}: {error}");
-        }
-        for (text, expected) in [
-            ("91,2,2026-06-21Z,06:00-20:00/15m", "-90 to 90"),
-            ("1,181,2026-06-21Z,06:00-20:00/15m", "-180 to 180"),
-            ("1,2,2026-06-31Z,06:00-20:00/15m", "no sun at"),
-            ("north,2,2026-06-21Z,06:00-20:00/15m", "`north` is not a valid number"),
+    fn the_part_that_is_wrong_is_named() {
+        let wrong = [
+            ("", "it has 0 parts between commas instead of four, LATITUDE,LONGITUDE,DATE"),
+            ("1,2,2026-06-21Z", "it has 3 parts"),
+            ("1,2,2026-06-21Z,06:00-20:00/15m,3", "it has 5 parts"),
+            ("91,2,2026-06-21Z,06:00-20:00/15m", "the latitude cannot be `91`: write degrees north from -90 to 90"),
+            ("north,2,2026-06-21Z,06:00-20:00/15m", "the latitude cannot be `north`: write degrees north"),
+            ("1,181,2026-06-21Z,06:00-20:00/15m", "the longitude cannot be `181`: write degrees east from -180 to 180"),
+            ("1,,2026-06-21Z,06:00-20:00/15m", "the longitude is missing: write degrees east"),
+            ("1,2,2026-6-21Z,06:00-20:00/15m", "the date cannot be `2026-6-21`: write a day that exists"),
+            ("1,2,21.06.2026+02:00,06:00-20:00/15m", "the date cannot be `21.06.2026`"),
+            ("1,2,2026-06-31Z,06:00-20:00/15m", "the date cannot be `2026-06-31`"),
+            ("1,2,9999-01-01Z,06:00-20:00/15m", "the date cannot be `9999-01-01`: write a day of the years from"),
+            ("1,2,2025-02-29Z,06:00-20:00/15m", "the date cannot be `2025-02-29`"),
+            ("1,2,2026-13-01Z,06:00-20:00/15m", "the date cannot be `2026-13-01`"),
+            ("1,2,2026-06-2äZ,06:00-20:00/15m", "the date cannot be `2026-06-2`"),
+            ("1,2,2026-06-21,06:00-20:00/15m", "the offset from universal time, right after the date, is missing"),
+            (
+                "1,2,2026-06-21+7,06:00-20:00/15m",
+                "right after the date, cannot be `+7`: write a sign, hours and minutes",
+            ),
+            ("1,2,2026-06-21+19:00,06:00-20:00/15m", "cannot be `+19:00`"),
+            ("1,2,2026-06-21T00:00Z,06:00-20:00/15m", "cannot be `T00:00Z`"),
+            ("1,2,2026-06-21Z,06:00/15m", "the time of day cannot be `06:00`: write its beginning and its end"),
+            ("1,2,2026-06-21Z,6-20/15m", "the beginning cannot be `6`: write hours and minutes"),
+            ("1,2,2026-06-21Z,06:60-20:00/15m", "the beginning cannot be `06:60`"),
+            ("1,2,2026-06-21Z,06:00-24:01/15m", "the end cannot be `24:01`"),
+            ("1,2,2026-06-21Z,06:00-/15m", "the end is missing"),
             ("1,2,2026-06-21Z,20:00-06:00/15m", "the end must be a time of the same day after its beginning"),
             ("1,2,2026-06-21Z,06:00-06:00/15m", "but is 06:00"),
-            ("1,2,2026-06-21Z,06:00-20:00/0m", "the step must be whole minutes, from 1m to 24h, but is 0m"),
-            ("1,2,2026-06-21Z,06:00-20:00/1.5m", "but is 1.5m"),
-            ("1,2,2026-06-21Z,06:00-20:00/25h", "but is 25h"),
-        ] {
+            ("1,2,2026-06-21Z,06:00-20:00/", "the step is missing"),
+            (
+                "1,2,2026-06-21Z,06:00-20:00/15",
+                "the step cannot be `15`: write whole minutes (m) or hours (h), from 1m to 24h",
+            ),
+            ("1,2,2026-06-21Z,06:00-20:00/15s", "the step cannot be `15s`"),
+            ("1,2,2026-06-21Z,06:00-20:00/0m", "the step cannot be `0m`"),
+            ("1,2,2026-06-21Z,06:00-20:00/1.5m", "the step cannot be `1.5m`"),
+            ("1,2,2026-06-21Z,06:00-20:00/25h", "the step cannot be `25h`"),
+        ];
+        for (text, expected) in wrong {
             let error = spec(text).unwrap_err();
             assert!(error.contains(expected), "{text}: {error}");
         }
+        assert!(spec("1,2,2024-02-29Z,06:00-20:00").is_ok());
     }
 
     #[test]
