@@ -4,6 +4,7 @@ use std::{fmt, io, path::Path, path::PathBuf};
 
 use lightmesh_memory::OverBudget;
 
+use crate::build::other_programs;
 use crate::build::quote::{self, list, quote, reference};
 
 /// The location of an error in a file.
@@ -65,7 +66,12 @@ pub enum LoadError {
         path: PathBuf,
     },
     /// The file extension is not that of a supported format.
-    #[error("`.{extension}` is not a supported scene format, {}; supported: {}, and builtin:NAME", path.display(), known.join(", "))]
+    #[error(
+        "`.{extension}` is not a supported scene format, {}; {}supported: {}, and builtin:NAME",
+        path.display(),
+        other_programs::remedy(extension),
+        known.join(", ")
+    )]
     UnknownFormat {
         /// The file.
         path: PathBuf,

@@ -10,6 +10,7 @@ mod instances;
 mod load_options;
 pub(crate) mod loaded_mesh;
 pub(crate) mod mesh_part;
+mod other_programs;
 pub(crate) mod placement;
 pub(crate) mod quote;
 pub(crate) mod sanitize;

@@ -9,8 +9,21 @@ fn error(path: &str) -> String {
 #[test]
 fn a_format_that_cannot_be_read_is_answered_with_those_that_can() {
     let known = "supported: .toml, .obj, .gltf, .glb, .ply, .stl, and builtin:NAME";
-    assert_eq!(error("bunny.fbx"), format!("`.fbx` is not a supported scene format, bunny.fbx; {known}"));
+    assert_eq!(error("bunny.xyz"), format!("`.xyz` is not a supported scene format, bunny.xyz; {known}"));
     assert!(error("bunny").contains(known));
+}
+
+#[test]
+fn scenes_of_other_programs_are_to_be_exported() {
+    for extension in ["fbx", "FBX", "3ds", "dae", "usd", "usda", "usdc", "usdz"] {
+        let message = error(&format!("house.{extension}"));
+        assert!(message.contains("; export it as glb, in the program that it comes from or in Blender"), "{message}");
+    }
+    for (extension, program) in [("blend", "Blender"), ("max", "3ds Max"), ("skp", "SketchUp"), ("ifc", "Bonsai")] {
+        let message = error(&format!("house.{extension}"));
+        assert!(message.contains("; export it as glb") && message.contains(program), "{message}");
+        assert!(message.contains("; supported: .toml, .obj"), "{message}");
+    }
 }
 
 #[test]
