@@ -7,6 +7,7 @@ use crate::run::{Done, Place};
 /// Lists encoders; else writes its arguments and frames, and a file.
 const FFMPEG: &str = r#"#!/bin/sh
 if [ "$2" = -encoders ]; then
+    [ -z "$KILLED" ] || kill -9 $$
     echo " V....D libx264  H.264"
     [ -n "$NO_VP9" ] || echo " V....D libvpx-vp9  VP9"
     exit
@@ -96,6 +97,9 @@ fn what_cannot_be_encoded_is_refused_before_the_work() {
     assert!(none.contains("; install ffmpeg, name it by LIGHTMESH_FFMPEG, or write frames"), "{none}");
     let lacking = refused(&[("NO_VP9", "1")], &["-o", "a.webm"]);
     assert!(lacking.contains("a.webm needs the encoder libvpx-vp9, but ./ffmpeg.sh lacks it"), "{lacking}");
+    let killed = refused(&[("KILLED", "1")], &["-o", "a.mp4"]);
+    assert!(killed.contains("`./ffmpeg.sh -encoders` failed (signal: 9 (SIGKILL)): it says nothing; "), "{killed}");
+    assert!(killed.contains("check the free memory") && !killed.contains("lacks"), "{killed}");
     for flag in ["--resume", "--skip-existing"] {
         let kept = refused(&[], &["-o", "a.mp4", flag]);
         assert!(kept.contains(&format!("{flag} keeps frames, but -o a.mp4 is one file")), "{kept}");

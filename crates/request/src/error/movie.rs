@@ -12,6 +12,20 @@ use crate::words::{Name, Words};
 /// Names the program that encodes.
 pub(crate) const FFMPEG: &str = "LIGHTMESH_FFMPEG";
 
+/// What helps if something else has ended it.
+const KILLED: &str = "the system or another program has killed it: check the free memory and try again";
+
+/// Whether a signal has ended a program.
+#[cfg(unix)]
+fn was_killed(status: &ExitStatus) -> bool {
+    std::os::unix::process::ExitStatusExt::signal(status).is_some()
+}
+
+#[cfg(not(unix))]
+fn was_killed(_: &ExitStatus) -> bool {
+    false
+}
+
 /// Why a film cannot become a movie.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -99,6 +113,17 @@ pub enum MovieError {
         /// The encoder.
         encoder: &'static str,
     },
+    /// It does not say what its encoders are.
+    Unasked {
+        /// The movie.
+        path: PathBuf,
+        /// The program.
+        program: String,
+        /// How it ended.
+        status: ExitStatus,
+        /// The end of its messages.
+        said: String,
+    },
     /// It ended before the movie did.
     Failed {
         /// The movie.
@@ -142,9 +167,16 @@ impl Told for MovieError {
                  frames, as in {frames}",
                 path.display()
             ),
+            MovieError::Unasked { path, program, status, said } => format!(
+                "{} needs {program} to encode it, but `{program} -encoders` failed ({status}): {said}; {}, name another program by \
+                 {FFMPEG}, or write frames, as in {frames}",
+                path.display(),
+                if was_killed(status) { KILLED } else { "install an ffmpeg that works" }
+            ),
             MovieError::Failed { path, program, status, said } => format!(
-                "cannot write {}: {program} failed ({status}): {said}; check the free disk space, or write frames, as in {frames}",
-                path.display()
+                "cannot write {}: {program} failed ({status}): {said}; {}, or write frames, as in {frames}",
+                path.display(),
+                if was_killed(status) { KILLED } else { "check the free disk space" }
             ),
             MovieError::Lost { path, program, reason } => format!(
                 "cannot write {}: {program} cannot be reached ({reason}); try again, or write frames, as in {frames}",

@@ -39,6 +39,15 @@ pub fn check_encoder(order: &Order, container: Container) -> Result<(), MovieErr
     let listing = Command::new(&program).args(["-hide_banner", "-encoders"]).stdin(Stdio::null()).output();
     let name = || name(&program);
     let listing = listing.map_err(|reason| MovieError::NoProgram { path: path.clone(), program: name(), reason })?;
+    if !listing.status.success() {
+        // It has not said what it lacks.
+        return Err(MovieError::Unasked {
+            path,
+            program: name(),
+            status: listing.status,
+            said: quoted(&listing.stderr),
+        });
+    }
     let encoder = container.encoder();
     let listed = String::from_utf8_lossy(&listing.stdout).split_whitespace().any(|word| word == encoder);
     if listed { Ok(()) } else { Err(MovieError::NoEncoder { path, program: name(), encoder }) }
@@ -136,8 +145,8 @@ impl Movie {
     }
 
     fn ended(&mut self, status: ExitStatus) -> MovieError {
-        let said = self.messages.take().and_then(|messages| messages.join().ok()).unwrap_or_default();
-        let said = if said.is_empty() { "it says nothing".to_owned() } else { said };
+        let said = self.messages.take().and_then(|messages| messages.join().ok());
+        let said = said.unwrap_or_else(|| quoted(&[]));
         MovieError::Failed { path: self.path.clone(), program: self.program.clone(), status, said }
     }
 }
@@ -196,7 +205,14 @@ fn end_of(mut said: impl Read) -> String {
         kept.extend_from_slice(&piece[..count]);
         kept.drain(..kept.len().saturating_sub(QUOTED));
     }
-    String::from_utf8_lossy(&kept).split_whitespace().collect::<Vec<_>>().join(" ")
+    quoted(&kept)
+}
+
+/// The end of what it says, as one line.
+fn quoted(said: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&said[said.len().saturating_sub(QUOTED)..]);
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if line.is_empty() { "it says nothing".to_owned() } else { line }
 }
 
 /// Ctrl-C reaches this program alone, which says how its outputs end.
@@ -225,5 +241,6 @@ mod tests {
     fn the_end_of_messages_is_one_line() {
         assert_eq!(end_of(&b"no such\n encoder\n"[..]), "no such encoder");
         assert_eq!(end_of(&[b'a'; 9000][..]).len(), QUOTED);
+        assert_eq!((end_of(&b""[..]), quoted(&[b'a'; 9000]).len()), ("it says nothing".to_owned(), QUOTED));
     }
 }
