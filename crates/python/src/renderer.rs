@@ -97,6 +97,12 @@ impl Renderer {
         &self.reason
     }
 
+    /// The threads of the CPU that were started: of more than 16, at most four for each logical CPU.
+    #[getter]
+    fn threads(&self) -> PyResult<usize> {
+        Ok(self.machine()?.engine.threads())
+    }
+
     /// Builds the acceleration structure of `scene`. `before` is the same scene at another moment: what has not moved is kept. `lights`, one or a
     /// sequence, stand in for the scene's. `progress` is called now and then, and `cancel` stops it.
     ///

@@ -338,6 +338,7 @@ def of_renderer(
     renderer = Renderer("auto", threads=2)
     assert_type(renderer.device, str)
     assert_type(renderer.reason, str)
+    assert_type(renderer.threads, int)
     before = renderer.prepare(scene)
     prepared = renderer.prepare(scene, before=before, lights=light, progress=progress, cancel=cancel, **settings)
     assert_type(prepared, PreparedScene)

@@ -609,6 +609,9 @@ class Renderer:
     @property
     def reason(self) -> str:
         """Which device that is, and why it was chosen."""
+    @property
+    def threads(self) -> int:
+        """The threads of the CPU that were started: of more than 16, at most four for each logical CPU."""
     def prepare(
         self,
         scene: Scene,

@@ -69,14 +69,15 @@ impl Renderer {
         Renderer::on(Choice::of(device)?, threads)
     }
 
-    /// A renderer on a prepared device with its own pool of `threads` threads; `None`: one per logical CPU.
+    /// A renderer on a prepared device with its own pool of `threads` threads; `None`: one per logical CPU. Of more than 16, at most four are
+    /// started for each logical CPU: others would only cost memory and time. Images do not depend on it.
     ///
     /// # Errors
     /// [`RenderError::Setting`] if the number of threads is invalid, [`RenderError::Threads`] if the threads cannot be
     /// started.
     pub fn on(choice: Choice, threads: Option<usize>) -> Result<Renderer, RenderError> {
         resolve::check_threads(threads)?;
-        let threads = threads.unwrap_or(0);
+        let threads = threads.map_or(0, resolve::worthwhile_threads);
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?;
         let engine = match choice.chosen {
@@ -205,6 +206,11 @@ impl Renderer {
                 points_on(&*cuda, &self.rows, &points, settings, observer)
             }
         })
+    }
+
+    /// The CPU threads that it has started.
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
     }
 
     /// Does other work on this renderer's CPU threads, such as encoding an image.

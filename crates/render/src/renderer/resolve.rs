@@ -22,6 +22,10 @@ use crate::view::{View, Window};
 
 /// More threads than any machine has logical CPUs would only wait for each other.
 const MAX_THREADS: usize = 1024;
+/// Threads that are started for each logical CPU at most: more cost memory and time, and divide the work no better.
+const THREADS_A_CPU: usize = 4;
+/// So many are started on any machine.
+const THREADS_ANYWHERE: usize = 16;
 
 /// Samples of a pixel are numbered next to pixels in 64 bits.
 const MAX_PIXEL_SAMPLES: u32 = 1 << 16;
@@ -152,6 +156,12 @@ pub(super) fn check_threads(threads: Option<usize>) -> Result<(), RenderError> {
         }),
         _ => Ok(()),
     }
+}
+
+/// How many of `threads` threads are worth starting on this machine.
+pub(super) fn worthwhile_threads(threads: usize) -> usize {
+    let cpus = std::thread::available_parallelism().map_or(1, usize::from);
+    threads.min((THREADS_A_CPU * cpus).max(THREADS_ANYWHERE))
 }
 
 /// Rejects invalid settings before any work.
