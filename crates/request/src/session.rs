@@ -15,6 +15,7 @@ use crate::mesh_file::Mesh;
 use crate::plan::Plan;
 use crate::save::save;
 use crate::sun::{self, SunHours};
+use crate::words::Words;
 
 /// A scene that is staged and prepared as planned.
 pub struct Session {
@@ -45,6 +46,17 @@ impl Plan {
     }
 }
 
+/// What to say if fewer threads are started than were asked for.
+fn fewer_threads(plan: &Plan, renderer: &Renderer, words: Words) -> Option<String> {
+    let (asked, started) = (usize::from(plan.threads?), renderer.threads());
+    (started < asked).then(|| {
+        format!(
+            "{}: using {started}, since more are no faster on this machine; the image is the same",
+            words.with("threads", asked)
+        )
+    })
+}
+
 impl Session {
     /// Stages and prepares a scene, which it took `load` seconds to read.
     ///
@@ -57,6 +69,12 @@ impl Session {
         load: f64,
         host: &dyn Host,
     ) -> Result<Session, Error> {
+        if let Some(text) = fewer_threads(&plan, renderer, host.words()) {
+            host.note(&text);
+        }
+        if let Some(text) = plan.files.misnamed(host.words()) {
+            host.warning(&text);
+        }
         if let Some(file) = plan.staging.file() {
             plan.files.outputs.keep("the environment", Some(file))?;
         }

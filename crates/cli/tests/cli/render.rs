@@ -480,3 +480,19 @@ fn a_coarse_smooth_ball_has_no_teeth_where_it_turns_from_the_light() {
     let [_, fall] = steps(&ball(false));
     assert!(fall > 0.1, "{fall}: facets have edges");
 }
+
+#[test]
+fn threads_that_would_only_wait_are_not_started() {
+    let place = Place::new();
+    let render = |threads: &str, image: &str| {
+        let flags = ["--size", "24x18", "--light", LAMP, "--device", "cpu", "--stats", "s.json"];
+        let done = place.good(&[&["render", "room.toml", "-o", image, "--threads", threads][..], &flags].concat());
+        (done.stderr, place.json("s.json")["settings"]["threads"].as_u64().unwrap())
+    };
+    let (note, started) = render("1000", "many.png");
+    assert!(started == (4 * std::thread::available_parallelism().unwrap().get() as u64).clamp(16, 1000), "{started}");
+    assert!(note.contains("--threads 1000: using ") && note.contains("the image is the same"), "{note}");
+    let (note, started) = render("5", "few.png");
+    assert!(started == 5 && !note.contains("--threads"), "{note}");
+    assert!(place.read("many.png") == place.read("few.png"));
+}

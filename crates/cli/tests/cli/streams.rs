@@ -69,6 +69,16 @@ fn a_format_overrides_the_extension() {
         place.good(&[&["render", "room.toml", "-o", name, "--format", "exr"][..], &SMALL].concat());
         assert!(place.read(name) == place.read("a.exr"), "{name}");
     }
+    let warned = |name: &str, format: &str| {
+        let done = place.good(&["render", "room.toml", "-o", name, "--format", format, "--size", "24x16"]);
+        done.stderr.lines().find(|line| line.starts_with("warning: ")).map(str::to_owned)
+    };
+    let expected = "warning: -o o.exr is a png file, as --format says, but its extension is that of exr files; name it o.png, or leave \
+                    out --format";
+    assert_eq!(warned("o.exr", "png").as_deref(), Some(expected));
+    for (name, format) in [("o.png", "png"), ("o.JPEG", "jpg"), ("o", "png"), ("o.data", "exr")] {
+        assert_eq!(warned(name, format), None, "{name}");
+    }
     place.good(&["compare", "a.exr", "image.png", "--max-rmse", "0"]);
 }
 

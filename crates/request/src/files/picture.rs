@@ -12,7 +12,7 @@ use crate::film::Container;
 use crate::order::Order;
 use crate::request::Request;
 use crate::value::{Background, Exposure, Switch, numbered};
-use crate::words::Name;
+use crate::words::{Name, Words};
 
 /// The name of the image among the files.
 const OUTPUT: Name = "output";
@@ -93,6 +93,22 @@ impl PictureFiles {
     /// The format of the image.
     pub fn format(&self) -> Option<Format> {
         self.options.format_of(self.picture_file().unwrap_or(Path::new("")))
+    }
+
+    /// What to say if the extension of the image is that of another format than is written.
+    pub(crate) fn misnamed(&self, words: Words) -> Option<String> {
+        let path = self.picture_file()?;
+        let (written, named) = (self.options.format?, Format::from_path(path)?);
+        (written != named).then(|| {
+            format!(
+                "{} {} is a {written} file, as {} says, but its extension is that of {named} files; name it {}, or leave out {}",
+                words.of(OUTPUT),
+                path.display(),
+                words.of("format"),
+                path.with_extension(written.name()).display(),
+                words.of("format")
+            )
+        })
     }
 
     /// The file of the image, if it goes to one.
