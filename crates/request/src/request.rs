@@ -98,8 +98,8 @@ settings! {
     /// "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m" [default: off]
     Motion "Film" sun: Option<SunSpec>, placeholder "LAT,LON,DATE,FROM-TO/STEP", conflicts [partial, environment, studio];
 
-    /// Render frames A to B, or every N-th of them, of the scene's animation, `turntable` or `sun` [default: all, with
-    /// `fps`, `turntable` or `sun`]
+    /// Render frames A to B or every N-th of them, or a list as in "7,9,20-30x2", of the scene's animation, `turntable` or
+    /// `sun` [default: all, with `fps`, `turntable` or `sun`]
     Frames "Film" frames: Option<Frames>, placeholder "A-B[xN]", conflicts [partial], bytes same;
 
     /// Set the frames per second of animation and movie, as a decimal or a ratio such as 30000/1001 [default: 24]

@@ -73,6 +73,22 @@ fn a_frame_does_not_depend_on_those_before() {
     assert!(!place.path("all.2.exr").exists() && place.path("all.4.exr").exists());
 }
 
+#[test]
+fn frames_may_be_a_list() {
+    let place = balls();
+    let film = ["render", "balls.toml", "--size", "16x12", "--turntable", "9"];
+    let done = place.good(&[&film[..], &["-o", "f.#.png", "--frames", "8,2,3-7:2"]].concat());
+    let names: Vec<String> = place.files().into_iter().filter(|name| name.starts_with("f.")).collect();
+    assert_eq!(names, ["f.2.png", "f.3.png", "f.5.png", "f.7.png", "f.8.png"], "{done:?}");
+    let message = place.refused(&[&film[..], &["-o", "g.#.png", "--frames", "2,12"]].concat());
+    assert!(message.contains("--frames 2,12: the film ends with frame 9"), "{message}");
+    let message = place.refused(&[&film[..], &["-o", "g.#.png", "--frames", "2;3"]].concat());
+    assert!(
+        message.contains("or several with commas between them, for instance 1-120, 1-120x4 or 7,9,20-30"),
+        "{message}"
+    );
+}
+
 /// Exposure and step of a frame.
 fn chosen(place: &Place, name: &str) -> [serde_json::Value; 2] {
     let stats: serde_json::Value = serde_json::from_slice(&place.read(name)).unwrap();

@@ -21,7 +21,7 @@ class _Motion(TypedDict, total=False):
 
 class _Frames(TypedDict, total=False):
     frames: str | None
-    """Render frames A to B, or every N-th of them, of the scene's animation, turntable or sun [default: all, with fps, turntable or sun]"""
+    """Render frames A to B or every N-th of them, or a list as in '7,9,20-30x2', of the scene's animation, turntable or sun [default: all, with fps, turntable or sun]"""
     fps: float | str | None
     """Set the frames per second of animation and movie, as a decimal or a ratio such as 30000/1001 [default: 24]"""
     resume: bool | None

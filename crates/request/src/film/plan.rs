@@ -79,8 +79,8 @@ impl Film {
         };
         let movie = Container::of_film(order)?;
         let record = if order.request.resume { manifest::known(order)? } else { None };
-        let mut film = Film { motion, record, movie, frames: order.request.frames, left: None };
-        if let Some(last) = motion.known_last().or(order.request.frames.map(Frames::last)) {
+        let mut film = Film { motion, record, movie, frames: order.request.frames.clone(), left: None };
+        if let Some(last) = motion.known_last().or(order.request.frames.as_ref().map(Frames::last)) {
             film.left = Some(film.left(order, film.wanted(last)?, last)?);
         }
         Ok(Some(film))
@@ -89,6 +89,9 @@ impl Film {
     /// What is left to render of the film of a scene: checks that it has the frames that are wanted, that their files have names of their own,
     /// and that nothing is replaced unasked.
     pub(crate) fn work(&self, order: &Order, scene: &Scene) -> Result<FrameRange, RequestError> {
+        if let (Motion::Sun(0), Some(spec)) = (self.motion, order.request.sun) {
+            return Err(RequestError::NoSun { spec });
+        }
         let last = self.last(scene)?;
         let frames = self.wanted(last)?;
         match &self.left {
@@ -99,7 +102,7 @@ impl Film {
 
     /// The frames that are wanted of a film with `last` of them.
     fn wanted(&self, last: u32) -> Result<Frames, RequestError> {
-        let frames = self.frames.unwrap_or(Frames::up_to(last));
+        let frames = self.frames.clone().unwrap_or_else(|| Frames::up_to(last));
         if frames.last() > last || frames.first() == 0 {
             Err(RequestError::NoFrame { frames, last })
         } else {
@@ -154,6 +157,6 @@ impl Film {
 
     /// A frame that stands for all in what is checked before the scene is open.
     pub(crate) fn first(&self) -> u32 {
-        self.frames.map_or(1, Frames::first)
+        self.frames.as_ref().map_or(1, Frames::first)
     }
 }

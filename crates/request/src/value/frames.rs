@@ -6,9 +6,16 @@ use std::str::FromStr;
 
 use super::ValueError;
 
+/// Frames: numbers, ranges, and every so many of a range, in one list. They are rendered in the order of their numbers, each once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frames {
+    /// At least one.
+    parts: Vec<Part>,
+}
+
 /// Frames from a first to a last one, every so many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frames {
+struct Part {
     first: u32,
     last: u32,
     step: u32,
@@ -17,32 +24,46 @@ pub struct Frames {
 impl Frames {
     /// All from 1 on.
     pub fn up_to(last: u32) -> Frames {
-        Frames { first: 1, last, step: 1 }
+        Frames { parts: vec![Part { first: 1, last, step: 1 }] }
     }
 
-    /// Their numbers.
-    pub fn numbers(self) -> impl Iterator<Item = u32> + Clone {
-        (self.first..=self.last).step_by(self.step as usize)
+    /// Their numbers, from the smallest on.
+    pub fn numbers(&self) -> impl Iterator<Item = u32> + Clone {
+        let from = |number| self.parts.iter().filter_map(|part| part.from(number)).min();
+        std::iter::successors(from(0), move |number| from(number.checked_add(1)?))
     }
 
     /// The smallest number.
-    pub fn first(self) -> u32 {
-        self.first
+    pub fn first(&self) -> u32 {
+        self.parts.iter().map(|part| part.first).min().unwrap_or_default()
     }
 
     /// The largest number that may occur.
-    pub fn last(self) -> u32 {
-        self.last
+    pub fn last(&self) -> u32 {
+        self.parts.iter().map(|part| part.last).max().unwrap_or_default()
+    }
+}
+
+impl Part {
+    /// Its smallest number that is not below `number`.
+    fn from(&self, number: u32) -> Option<u32> {
+        let steps = number.saturating_sub(self.first).div_ceil(self.step);
+        let next = steps.checked_mul(self.step).and_then(|ahead| ahead.checked_add(self.first));
+        next.filter(|&next| next <= self.last)
     }
 }
 
 impl fmt::Display for Frames {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Frames { first, last, step } = self;
-        match step {
-            1 => write!(f, "{first}-{last}"),
-            _ => write!(f, "{first}-{last}x{step}"),
+        for (index, Part { first, last, step }) in self.parts.iter().enumerate() {
+            f.write_str(if index == 0 { "" } else { "," })?;
+            match step {
+                _ if first == last => write!(f, "{first}"),
+                1 => write!(f, "{first}-{last}"),
+                _ => write!(f, "{first}-{last}x{step}"),
+            }?;
         }
+        Ok(())
     }
 }
 
@@ -50,20 +71,25 @@ impl FromStr for Frames {
     type Err = ValueError;
 
     fn from_str(text: &str) -> Result<Frames, ValueError> {
-        let form =
-            || ValueError::Form { form: "A-B or A-BxN in whole numbers, A up to B", example: "1-120 or 1-120x4" };
-        let whole = |text: &str| {
-            let is_plain = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-            is_plain.then(|| text.parse().ok()).flatten()
-        };
-        let (range, step) =
-            text.trim().split_once('x').map_or((text.trim(), Some(1)), |(range, step)| (range, whole(step)));
-        let (first, last) = range.split_once('-').unwrap_or((range, range));
-        match (whole(first), whole(last), step) {
-            (Some(first), Some(last), Some(step)) if first <= last && step > 0 => Ok(Frames { first, last, step }),
-            _ => Err(form()),
-        }
+        let parts = text.split(',').map(part).collect::<Option<_>>();
+        parts.map(|parts| Frames { parts }).ok_or(ValueError::Form {
+            form: "A, A-B or every N-th of them, A-BxN or A-B:N, in whole numbers, A up to B, or several with commas between them",
+            example: "1-120, 1-120x4 or 7,9,20-30",
+        })
     }
+}
+
+/// One part of a list: `A`, `A-B`, `A-BxN` or `A-B:N`.
+fn part(text: &str) -> Option<Part> {
+    let text = text.trim();
+    let whole = |text: &str| {
+        let is_plain = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        is_plain.then(|| text.parse().ok()).flatten()
+    };
+    let (range, step) = text.split_once(['x', ':']).map_or((text, Some(1)), |(range, step)| (range, whole(step)));
+    let (first, last) = range.split_once('-').unwrap_or((range, range));
+    let part = Part { first: whole(first)?, last: whole(last)?, step: step? };
+    (part.first <= part.last && part.step > 0).then_some(part)
 }
 
 /// The file of a frame: `####` in the name of `path`, or `%04d`, stands for its number, with as many digits at least. `None` if the name has
@@ -93,13 +119,40 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_are_read_as_they_are_shown() {
-        for (text, numbers) in [("1-3", vec![1, 2, 3]), ("2-9x3", vec![2, 5, 8]), ("7-7", vec![7])] {
+    fn ranges_and_lists_are_read_as_they_are_shown() {
+        for (text, numbers) in [
+            ("1-3", vec![1, 2, 3]),
+            ("2-9x3", vec![2, 5, 8]),
+            ("7", vec![7]),
+            ("7,9", vec![7, 9]),
+            ("20-22,1-5x2,3-4", vec![1, 3, 4, 5, 20, 21, 22]),
+            ("4294967290-4294967295x4", vec![4294967290, 4294967294]),
+        ] {
             let frames: Frames = text.parse().unwrap();
             assert_eq!((frames.numbers().collect::<Vec<_>>(), frames.to_string()), (numbers, text.to_owned()));
         }
-        assert_eq!("7".parse::<Frames>().unwrap().to_string(), "7-7");
-        for wrong in ["", "-", "3-1", "1-3x0", "1-", "+1-3", "a-b", "1-3x", "1.5-3", "1-99999999999"] {
+        for (text, shown) in [("7-7", "7"), ("1-5:2", "1-5x2"), (" 9, 7 ", "9,7")] {
+            assert_eq!(text.parse::<Frames>().unwrap().to_string(), shown);
+        }
+        let frames: Frames = "9,2-4".parse().unwrap();
+        assert_eq!((frames.first(), frames.last()), (2, 9));
+        let wrong = [
+            "",
+            "-",
+            "3-1",
+            "1-3x0",
+            "1-",
+            "+1-3",
+            "a-b",
+            "1-3x",
+            "1-3:",
+            "1-3:2x2",
+            "1.5-3",
+            "1-99999999999",
+            "7,",
+            ",7",
+        ];
+        for wrong in wrong {
             assert!(wrong.parse::<Frames>().is_err(), "{wrong}");
         }
     }
