@@ -83,12 +83,23 @@ fn hours_need_no_film() {
 }
 
 #[test]
+fn a_polar_night_is_an_answer() {
+    let place = tower();
+    let files = ["--sun-hours", "h.csv", "--sun-hours", "h.exr", "--sun-hours", "h.png"];
+    let done = place.good(&study("78,15,2026-12-21+01:00,00:00-24:00/1h", &files));
+    assert!(done.stderr.contains("--sun: 25 moments are left out"), "{done:?}");
+    let table = String::from_utf8(place.read("h.csv")).unwrap();
+    let floor = table.lines().find(|line| line.starts_with("floor,")).unwrap();
+    assert!(floor.ends_with(",0.0,0.0,0.0,0.0000"), "{table}");
+}
+
+#[test]
 fn studies_that_cannot_be_made_are_refused_at_once() {
     let place = tower();
     let day = "48,0,2026-06-21Z,08:00-16:00/1h";
     for (sun, flags, expected) in [
         (day, &["-o", "day.png"][..], "-o day.png is one file, but a film has one for each frame"),
-        (day, &["-o", "d.#.png", "--frames", "10"], "--frames 10-10: the film ends with frame 9"),
+        (day, &["-o", "d.#.png", "--frames", "10"], "--frames 10: the film ends with frame 9"),
         (day, &["-o", "d.#.png", "--sky", "uniform"], "--sun needs a clear sky"),
         (day, &["-o", "d.#.png", "--turntable", "3"], "cannot be used with"),
         (day, &["-o", "d.#.png", "--environment", "p.hdr"], "cannot be used with"),
@@ -101,13 +112,13 @@ fn studies_that_cannot_be_made_are_refused_at_once() {
         (day, &["--sun-hours", "h.csv", "--skip-existing"], "--output"),
         (
             "78,15,2026-12-21+01:00,00:00-24:00/1h",
-            &["--sun-hours", "h.csv"],
-            "below the horizon at all of these moments",
+            &["--sun-hours", "h.csv", "-o", "d.#.png"],
+            "below the horizon at all of these moments, so there is no frame",
         ),
         ("48,0,2026-06-21Z,16:00-08:00/1h", &["--sun-hours", "h.csv"], "the end must be a time of the same day"),
         ("48,0,2026-06-21,08:00-16:00/1h", &["--sun-hours", "h.csv"], "offset from universal time"),
         ("98,0,2026-06-21Z,08:00-16:00/1h", &["--sun-hours", "h.csv"], "-90 to 90"),
-        ("48,0,2026-02-29Z,08:00-16:00/1h", &["--sun-hours", "h.csv"], "no sun at"),
+        ("48,0,2026-02-29Z,08:00-16:00/1h", &["--sun-hours", "h.csv"], "the date cannot be `2026-02-29`"),
     ] {
         let before = place.files();
         let done = place.run(&study(sun, flags));

@@ -100,7 +100,7 @@ pub enum RequestError {
     },
     /// The sun of a study shines from a clear sky.
     SunWithoutSky,
-    /// It is night all the time.
+    /// It is night all the time, which has no frames.
     NoSun {
         /// The hours that were asked for.
         spec: SunSpec,
@@ -201,8 +201,10 @@ impl Told for RequestError {
                 words.with("sky", "clear")
             ),
             RequestError::NoSun { spec } => format!(
-                "{}: the sun is below the horizon at all of these moments; choose another date, other hours or a smaller step",
-                words.with("sun", spec)
+                "{}: the sun is below the horizon at all of these moments, so there is no frame; choose another date, other hours or a smaller \
+                 step, or write only the hours, which are 0 ({})",
+                words.with("sun", spec),
+                words.of("sun_hours")
             ),
             RequestError::HoursFormat { path } => format!(
                 "{}: unknown format; use the extension exr, png or csv",

@@ -24,7 +24,7 @@ const HALVINGS: usize = 30;
 pub struct SunStudy {
     /// The hours of the day, as typed.
     pub spec: SunSpec,
-    /// The moments with sun, in their order; at least one.
+    /// The moments with sun, in their order; none in a polar night.
     pub moments: Vec<SunMoment>,
     /// The moments without.
     pub dark: Vec<u32>,
@@ -52,6 +52,12 @@ pub struct HoursFile {
     pub path: PathBuf,
     /// What it holds.
     pub format: HoursFormat,
+}
+
+impl HoursFile {
+    pub(super) fn is_table(&self) -> bool {
+        self.format == HoursFormat::Csv
+    }
 }
 
 /// How hours of direct sun are written.
@@ -82,7 +88,8 @@ impl HoursFormat {
 parse_by_name!(HoursFormat, "format of hours");
 
 impl SunStudy {
-    /// The study that is asked for, if one is. Fails if there is no sun, or a file cannot be written.
+    /// The study that is asked for, if one is. Fails if its frames have no sun, or a file cannot be written. Without frames, the hours of a night
+    /// are an answer: 0.
     pub(crate) fn new(order: &Order) -> Result<Option<SunStudy>, RequestError> {
         let Some(spec) = order.request.sun else { return Ok(None) };
         let sky = order.request.sky.unwrap_or_else(SkySpec::clear);
@@ -90,23 +97,24 @@ impl SunStudy {
             return Err(RequestError::SunWithoutSky);
         }
         let outputs = order.files.sun_hours.iter().map(|path| hours_file(path, None)).collect::<Result<_, _>>()?;
-        SunStudy::of(spec, sky, outputs).map(Some)
-    }
-
-    /// The study of these hours, if there is sun.
-    pub fn of(spec: SunSpec, sky: SkySpec, outputs: Vec<HoursFile>) -> Result<SunStudy, RequestError> {
-        let (moments, dark) = moments(&spec);
-        if moments.is_empty() {
+        let study = SunStudy::of(spec, sky, outputs);
+        if study.moments.is_empty() && order.files.output.is_some() {
             return Err(RequestError::NoSun { spec });
         }
-        Ok(SunStudy { spec, moments, dark, sky, outputs })
+        Ok(Some(study))
     }
 
-    /// The sky of moment number `index`: the same as of `--sky` with this place and time.
+    /// The study of these hours.
+    pub fn of(spec: SunSpec, sky: SkySpec, outputs: Vec<HoursFile>) -> SunStudy {
+        let (moments, dark) = moments(&spec);
+        SunStudy { spec, moments, dark, sky, outputs }
+    }
+
+    /// The sky of moment number `index`: the same as of `--sky` with this place and time. If there is none, it is that of another day.
     pub fn sky_at(&self, index: usize) -> SkySpec {
         let mut spec = self.sky;
-        if let SkyKind::Clear { sun, .. } = &mut spec.sky.kind {
-            *sun = self.moments[index].sun;
+        if let (SkyKind::Clear { sun, .. }, Some(moment)) = (&mut spec.sky.kind, self.moments.get(index)) {
+            *sun = moment.sun;
         }
         spec
     }
@@ -114,6 +122,11 @@ impl SunStudy {
     /// The hours of sunshine of an open field.
     pub fn hours(&self) -> f64 {
         self.moments.iter().map(|moment| moment.hours).sum()
+    }
+
+    /// Decimals of hours that mean something: multiples of the step can be told apart.
+    pub(crate) fn decimals(&self) -> usize {
+        if self.spec.step.is_multiple_of(6) { 1 } else { 2 }
     }
 
     /// Files of a run that writes hours of direct sun and no image.

@@ -33,6 +33,7 @@ use crate::context::Context;
 use crate::error::{Error, OutputError};
 use crate::files::{publish, ready};
 use crate::host::RENDERING;
+use crate::words::Words;
 
 /// Bytes that layers of suns may take at a time.
 const BYTES_AT_ONCE: usize = 256 << 20;
@@ -51,6 +52,9 @@ pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context
         renderer.install(|| study.outputs.iter().map(|output| found.file(output)).collect::<Result<_, _>>())
     })?;
     publish(files)?;
+    if let Some(text) = found.unseen(host.words()).filter(|_| study.outputs.iter().any(HoursFile::is_table)) {
+        host.warning(&text);
+    }
     let names: Vec<String> = study.outputs.iter().map(|output| output.path.display().to_string()).collect();
     Ok(format!("hours of direct sun of {} moments: {seconds:.3} s, {}", study.moments.len(), names.join(", ")))
 }
@@ -90,7 +94,9 @@ impl SunHours {
         // Parts of about the same size.
         let at_once = suns.len().div_ceil(suns.len().div_ceil(at_once).max(1)).max(1);
         let (mut seen, mut hours) = (None, vec![0.0_f64; width * height]);
-        for suns in suns.chunks(at_once) {
+        // A night is an image, too: what the pixels see.
+        let night = suns.is_empty().then_some(&suns[..]);
+        for suns in suns.chunks(at_once).chain(night) {
             let dark = |(light, _): &(Light, f64)| light.clone().with_intensity(Vec3::ZERO);
             let lights: Lights = suns.iter().map(dark).collect();
             let lit = prepared.with_lights(lights.with_ambient(Vec3::ZERO));
@@ -105,7 +111,7 @@ impl SunHours {
             }
             seen.get_or_insert_with(|| without_light(frame));
         }
-        let frame = seen.expect("a study has a moment with sun");
+        let frame = seen.expect("there is an image at least");
         let layers = frame.layers().expect("they were asked for");
         let mask = layers.depth.iter().map(|depth| depth.is_finite()).collect();
         let hours = hours.into_iter().map(|hours| hours as f32).collect();
@@ -147,7 +153,20 @@ impl SunHours {
         }
     }
 
-    /// Hours by object, as text with a row for each object that is visible.
+    /// What to say if pixels show some objects and not others.
+    fn unseen(&self, words: Words) -> Option<String> {
+        let (unseen, all) = table::unseen(self);
+        let are = if unseen == 1 { "is" } else { "are" };
+        (unseen > 0).then(|| {
+            format!(
+                "{unseen} of {all} objects {are} seen by no pixel, so the table has no hours of them; choose another camera or more pixels ({}, {})",
+                words.of("camera"),
+                words.of("size")
+            )
+        })
+    }
+
+    /// Hours by object, as text with a row for each; without hours if no pixel sees the object.
     pub fn table(&self) -> String {
         table::table(self)
     }

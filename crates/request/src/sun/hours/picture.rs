@@ -26,7 +26,9 @@ const AROUND: usize = 3;
 
 /// The image with its legend.
 pub(super) fn picture(found: &SunHours, study: &SunStudy) -> Frame {
-    let most = study.hours().max(f64::MIN_POSITIVE);
+    // The scale of a night is that of all the time.
+    let all = f64::from(study.spec.to - study.spec.from) / 60.0;
+    let most = Some(study.hours()).filter(|&hours| hours > 0.0).unwrap_or(all);
     let edges = edges(found);
     let code = |pixel: usize| match found.sees(pixel) {
         _ if edges[pixel] => [0; 3],

@@ -1,7 +1,11 @@
 //! Hours of direct sun by object, as a table.
 //!
 //! What counts is the surface that the image shows: each pixel with the area that it shows of a surface. What is hidden from the camera, or
-//! outside of the image, is not there; a plan is made by a camera with parallel rays from above.
+//! outside of the image, does not count; a plan is made by a camera with parallel rays from above. The number of pixels says how much a row rests
+//! on: objects that no pixel sees have a row with 0 pixels and no hours.
+//!
+//! Hours have as many decimals as the step of the study allows. Spreadsheets would run names that begin like formulas: they get an apostrophe
+//! in front, which shows them as text.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -29,8 +33,8 @@ struct Row {
     most: f32,
 }
 
-/// Text with a row for each object that is visible, in the order of the scene.
-pub(super) fn table(found: &SunHours) -> String {
+/// The rows of the objects that pixels see, by their numbers. What has no object is number 0.
+fn rows(found: &SunHours) -> BTreeMap<u32, Row> {
     let (layers, window) = (found.layers(), found.frame.window());
     let grid = PixelGrid::new(&found.camera, window.whole);
     let mut rows: BTreeMap<u32, Row> = BTreeMap::new();
@@ -46,20 +50,41 @@ pub(super) fn table(found: &SunHours) -> String {
         row.enough += if hours >= ENOUGH - ROUNDING { area } else { 0.0 };
         (row.least, row.most) = (row.least.min(hours), row.most.max(hours));
     }
+    rows
+}
+
+/// How many objects no pixel sees, and how many there are.
+pub(super) fn unseen(found: &SunHours) -> (usize, usize) {
+    let (all, seen) = (found.layers().object.names.len(), rows(found).into_keys().filter(|&number| number > 0).count());
+    (all - seen, all)
+}
+
+/// Text with a row for each object, in the order of the scene.
+pub(super) fn table(found: &SunHours) -> String {
+    let (rows, names) = (rows(found), &found.layers().object.names);
+    let decimals = found.study.decimals();
     let mut text = HEADER.to_owned();
-    for (number, Row { pixels, area, hours, enough, least, most }) in rows {
-        let names = &layers.object.names;
-        let name = quoted((number as usize).checked_sub(1).and_then(|index| names.get(index)).map_or("", |name| name));
-        let (mean, share) = (hours / area, enough / area);
+    let nameless = rows.contains_key(&0).then_some((0, ""));
+    for (number, name) in nameless.into_iter().chain((1..).zip(names.iter().map(String::as_str))) {
+        let name = field(name);
         // Writing to a text cannot fail.
-        let _ = writeln!(text, "{name},{pixels},{area:.6},{mean:.4},{least:.4},{most:.4},{share:.4}");
+        let _ = match rows.get(&number) {
+            Some(Row { pixels, area, hours, enough, least, most }) => {
+                let (mean, share) = (hours / area, enough / area);
+                let hours = format!("{mean:.decimals$},{least:.decimals$},{most:.decimals$}");
+                writeln!(text, "{name},{pixels},{area:.6},{hours},{share:.4}")
+            }
+            None => writeln!(text, "{name},0,0,,,,"),
+        };
     }
     text
 }
 
-/// A field of a table: in quotes if it needs them (RFC 4180).
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+/// A field of a table: no formula, and in quotes if it needs them (RFC 4180).
+fn field(name: &str) -> String {
+    let apostrophe = if name.starts_with(['=', '+', '-', '@', '\t', '\r']) { "'" } else { "" };
+    let name = format!("{apostrophe}{name}");
+    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name }
 }
 
 #[cfg(test)]
@@ -68,7 +93,17 @@ mod tests {
 
     #[test]
     fn names_do_not_end_fields() {
-        assert_eq!(quoted("house 1"), "house 1");
-        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+        assert_eq!(field("house 1"), "house 1");
+        assert_eq!(field("a, \"b\""), "\"a, \"\"b\"\"\"");
+    }
+
+    #[test]
+    fn names_are_no_formulas() {
+        assert_eq!(field("=1+1"), "'=1+1");
+        assert_eq!(field("=cmd|' /C calc'!A0,x"), "\"'=cmd|' /C calc'!A0,x\"");
+        for name in ["+1", "-1", "@sum", "\tx"] {
+            assert_eq!(field(name), format!("'{name}"));
+        }
+        assert_eq!(field("a=1"), "a=1");
     }
 }

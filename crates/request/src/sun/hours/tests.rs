@@ -15,7 +15,7 @@ const SIZE: [u32; 2] = [96, 96];
 const HALF: Vec3 = Vec3::new(1.0, 1.5, 1.0);
 
 fn study(text: &str) -> SunStudy {
-    SunStudy::of(text.parse().unwrap(), SkySpec::clear(), Vec::new()).unwrap_or_else(|error| panic!("{error}"))
+    SunStudy::of(text.parse().unwrap(), SkySpec::clear(), Vec::new())
 }
 
 fn hours_of(scene: &str, study: &SunStudy) -> SunHours {
@@ -115,7 +115,7 @@ fn bytes_are_those_of_files() {
 
 #[test]
 fn the_table_sums_what_is_seen() {
-    let found = hours_of(&format!("{PLAN}{BOX}"), &study("48,0,2026-04-20Z,07:00-17:00/1h"));
+    let found = hours_of(&format!("{PLAN}{BOX}"), &study("48,0,2026-04-20Z,07:00-17:00/25m"));
     let table = table::table(&found);
     let mut lines = table.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -136,6 +136,33 @@ fn the_table_sums_what_is_seen() {
     let by_object = ground[0] * ground[2] + house[0] * house[2];
     assert!((sum - by_object).abs() < 1e-3 * sum, "{sum} {by_object}");
     assert!(ground[3] < 1.0 && ground[4] == 10.0 && (0.9..1.0).contains(&ground[5]), "{table}");
+}
+
+#[test]
+fn a_polar_night_has_no_hours_and_a_polar_day_all() {
+    let night = study("78,15,2026-12-21+01:00,00:00-24:00/1h");
+    assert!(night.moments.is_empty() && night.left_out(crate::words::Words::Flags).unwrap().contains("25 moments"));
+    let found = hours_of(&format!("{PLAN}{BOX}"), &night);
+    assert!(found.hours().iter().all(|&hours| hours == 0.0) && found.mask().iter().all(|&sees| sees));
+    let table = found.table();
+    assert!(table.contains("\nhouse,256,4.000000,0.0,0.0,0.0,0.0000\n"), "{table}");
+    for &format in HoursFormat::ALL {
+        found.encode(format).unwrap_or_else(|error| panic!("{format}: {error}"));
+    }
+    let day = hours_of(PLAN, &study("78,15,2026-06-21+01:00,00:00-24:00/1h"));
+    assert!(day.hours().iter().all(|hours| (hours - 24.0).abs() < 1e-3), "{:?}", day.hours()[0]);
+}
+
+#[test]
+fn objects_that_no_pixel_sees_are_in_the_table() {
+    let hidden = "[[box]]\nname = \"=cellar\"\ncenter = [0, -2, 0]\nsize = [1, 1, 1]\n";
+    let found = hours_of(&format!("{PLAN}{hidden}{BOX}"), &study("48,0,2026-04-20Z,12:00-13:00/30m"));
+    assert_eq!(table::unseen(&found), (1, 3));
+    let table = found.table();
+    assert!(
+        table.contains("\n'=cellar,0,0,,,,\n") && table.contains("\nhouse,256,4.000000,1.0,1.0,1.0,0.0000\n"),
+        "{table}"
+    );
 }
 
 #[test]
