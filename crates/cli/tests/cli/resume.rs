@@ -5,6 +5,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
+use xxhash_rust::xxh3::xxh3_128;
 
 use crate::run::{Done, Place};
 
@@ -146,8 +147,12 @@ fn another_scene_and_other_settings_are_refused() {
     place.good(&film(&["--overwrite", "--frames", "1-2"]));
     assert_eq!(record(&place, "f.##.png")["frames"].as_object().unwrap().len(), 2, "the film is begun anew");
 
-    let version = String::from_utf8(place.read(MANIFEST)).unwrap();
-    place.write(MANIFEST, &version.replace(env!("CARGO_PKG_VERSION"), "0.0.1"));
+    // As another version would write it, with the checksum of the films.
+    let text = String::from_utf8(place.read(MANIFEST)).unwrap().replace(env!("CARGO_PKG_VERSION"), "0.0.1");
+    let films = text.split_once("\"films\": ").unwrap().1.trim_end().strip_suffix("\n}").unwrap().replace("\n  ", "\n");
+    let sum = format!("{:032x}", xxh3_128(format!("{films}\n").as_bytes()));
+    let before = place.json(MANIFEST)["xxh3"].as_str().unwrap().to_owned();
+    place.write(MANIFEST, &text.replace(&before, &sum));
     assert!(refused(&["--resume"]).contains("was begun by version 0.0.1 of lightmesh, and this is "));
     for flag in ["--overwrite", "--skip-existing"] {
         assert!(refused(&["--resume", flag]).contains("cannot be used with"), "{flag}");
