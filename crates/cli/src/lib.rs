@@ -35,7 +35,9 @@ pub fn run_command(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> 
     panic::set_hook(Box::new(report_fault));
     color::set(color::asked(arguments.iter().cloned()));
     let result = panic::catch_unwind(|| match parse(&arguments, Styles::plain()) {
-        Ok(cli) => start(&cli.command).and_then(|()| run::run(cli.command)).unwrap_or_else(|failure| failed(&failure)),
+        Ok(cli) => start(&cli.command)
+            .and_then(|()| run::run(cli.command))
+            .unwrap_or_else(|failure| failed(&failure, &arguments)),
         Err(message) => explain(&arguments, &message),
     });
     interrupt::leave_if_requested();
@@ -43,7 +45,8 @@ pub fn run_command(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> 
 }
 
 fn parse(arguments: &[OsString], styles: Styles) -> Result<Cli, clap::Error> {
-    let cli = Cli::from_arg_matches(&args::command().styles(styles).try_get_matches_from(arguments)?)?;
+    let matches = args::command().styles(styles).try_get_matches_from(arguments);
+    let cli = Cli::from_arg_matches(&matches.map_err(|error| args::naming_variables(error, arguments))?)?;
     color::set(cli.color);
     Ok(cli)
 }
@@ -63,14 +66,19 @@ fn start(command: &Command) -> Result<(), Failure> {
 }
 
 /// Reports an error; returns the exit code.
-fn failed(failure: &Failure) -> u8 {
+fn failed(failure: &Failure, arguments: &[OsString]) -> u8 {
     match failure {
         Failure::Exceeded(_) => output::complain(&failure.to_string()),
         // The last message, on what is written, says it.
         _ if failure.exit_code() == INTERRUPTED => {}
         _ => match flags::that_mend(failure) {
             flags if flags.is_empty() => output::complain(&format!("error: {failure}")),
-            flags => output::complain(&format!("error: {failure} ({})", flags.join(", "))),
+            flags => {
+                // A flag with a value is what to write instead.
+                let variable = |flag: &str| args::variable_of(flag, arguments).filter(|_| !flag.contains(' '));
+                let flags: Vec<String> = flags.into_iter().map(|flag| variable(&flag).unwrap_or(flag)).collect();
+                output::complain(&format!("error: {failure} ({})", flags.join(", ")));
+            }
         },
     }
     failure.exit_code()

@@ -163,7 +163,7 @@ items! {
     Frames: Shape::Text, Never;
     Size: Shape::Wholes(2), Never, "x";
     Dims: Shape::Wholes(3), Never, "x";
-    Crop: Shape::Wholes(4), Never;
+    Crop: Shape::Wholes(4), Text;
     Background: Shape::Color, Text;
     Color: Shape::Color, Text;
     LightSpec: Shape::Text, Text;

@@ -6,6 +6,7 @@
 mod bench;
 mod render;
 mod settings;
+mod variables;
 mod words;
 
 use std::path::PathBuf;
@@ -18,6 +19,7 @@ use lightmesh::scene::Instancing;
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
 pub(crate) use render::RenderArgs;
 pub(crate) use settings::{Flags, Reading};
+pub(crate) use variables::{naming_variables, variable_of};
 pub(crate) use words::Progress;
 
 use crate::color::When;
@@ -41,10 +43,10 @@ fn version() -> String {
     format!("{} ({commit}kernels for CUDA 12.0 or newer)", env!("CARGO_PKG_VERSION"))
 }
 
-/// The command line with a variable for each flag of `render`: LIGHTMESH_MEMORY_LIMIT for `--memory-limit`.
+/// The command line with a variable for each flag of `render`.
 pub(crate) fn command() -> clap::Command {
     with_defaults(Cli::command()).mut_subcommands(|subcommand| match subcommand.get_name() {
-        "render" => subcommand.mut_args(with_variable),
+        "render" => subcommand.mut_args(variables::with_variable),
         _ => subcommand,
     })
 }
@@ -65,16 +67,6 @@ fn with_default(flag: Arg) -> Arg {
     }
 }
 
-fn with_variable(flag: Arg) -> Arg {
-    match flag.get_long().map(|long| long.replace('-', "_").to_uppercase()) {
-        Some(name) if !NOT_FROM_VARIABLES.contains(&&*name) => flag.env(format!("LIGHTMESH_{name}")).hide_env(true),
-        _ => flag,
-    }
-}
-
-/// What a single command asks for, or what has no value.
-const NOT_FROM_VARIABLES: [&str; 5] = ["HELP", "OUTPUT", "LIGHT", "QUIET", "VERBOSE"];
-
 const EXIT_CODES: &str = "\
 Exit codes:
   0    success
@@ -87,7 +79,8 @@ Exit codes:
 Environment (flags win over variables):
   LIGHTMESH_DEVICE      sets --device of `lightmesh render`
   LIGHTMESH_GRID_FILE   sets --grid-file, and so on for its flags
-                        except -o, --light, -q and -v
+                        except -o, --light, -q and -v; flags without
+                        a value take 1, yes, true or on and 0, no, false or off
   LIGHTMESH_FFMPEG      names the program that encodes movies
   CUDA_VISIBLE_DEVICES  hides and renumbers GPUs
   NO_COLOR, CLICOLOR_FORCE, CLICOLOR=0 decide about colours

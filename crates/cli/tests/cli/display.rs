@@ -115,6 +115,8 @@ fn a_crop_is_a_part_of_the_whole_also_as_codes() {
         assert_eq!((part.width(), part.height()), (14, 8));
         assert_eq!((part.color(), part.alpha()), (expected.color(), expected.alpha()), "{flags:?}");
     }
+    let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--size", "32x24", "--crop", "-9,7,24,8"]);
+    assert!(message.contains("'-9,7,24,8' for '--crop") && message.contains("the first two at least 0"), "{message}");
     let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--size", "32x24", "--crop", "9,7,24,8"]);
     assert!(message.contains("9,7,24,8") && message.contains("32x24") && message.contains("--crop"), "{message}");
 }

@@ -2,7 +2,7 @@
 
 use std::process::Stdio;
 
-use crate::run::Place;
+use crate::run::{Done, Place};
 
 /// The flags of `render` that other programs rely on.
 const FLAGS: [&str; 54] = [
@@ -122,6 +122,45 @@ fn a_variable_sets_a_flag_unless_the_flag_is_given() {
     };
     assert_eq!(size(&[]), serde_json::json!([9, 7]));
     assert_eq!(size(&["--size", "8x8"]), serde_json::json!([8, 8]));
+}
+
+#[test]
+fn variables_turn_flags_on_and_off() {
+    let place = Place::new();
+    place.write("odd.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nmtllib none.mtl\n");
+    let strict = |text: &str| {
+        let render = ["render", "odd.obj", "-o", "a.png", "--size", "8x6", "--device", "cpu"];
+        Done::from(place.command(&render).env("LIGHTMESH_STRICT", text).output().unwrap())
+    };
+    for off in ["0", "no", "False", "off", ""] {
+        assert_eq!(strict(off).code, Some(0), "{off}");
+    }
+    for on in ["1", "yes", "true", "ON"] {
+        let done = strict(on);
+        assert!(done.code == Some(2) && done.stderr.contains("(LIGHTMESH_STRICT)"), "{on}: {done:?}");
+    }
+    let odd = strict("perhaps");
+    assert!(odd.code == Some(2) && odd.stderr.contains("'perhaps' for 'LIGHTMESH_STRICT': write 1, yes"), "{odd:?}");
+}
+
+#[test]
+fn errors_name_the_variable_that_a_value_comes_from() {
+    let place = Place::new();
+    let render = |variables: &[(&str, &str)], flags: &[&str]| {
+        let all = [&["render", "room.toml", "-o", "a.png", "--device", "cpu", "--size", "8x6"], flags].concat();
+        Done::from(place.command(&all).envs(variables.iter().copied()).output().unwrap())
+    };
+    for (name, text) in [("LIGHTMESH_QUALITY", "best"), ("LIGHTMESH_AA", "0"), ("LIGHTMESH_CAMERA", "here")] {
+        let done = render(&[(name, text)], &[]);
+        let expected = format!("'{text}' for '{name}'");
+        assert!(done.code == Some(2) && done.stderr.contains(&expected), "{name}: {done:?}");
+        assert_eq!(render(&[(name, "")], &[]).code, Some(0), "an empty variable is none");
+    }
+    let typed = render(&[("LIGHTMESH_QUALITY", "draft")], &["--quality", "best"]);
+    assert!(typed.stderr.contains("'best' for '--quality <"), "{typed:?}");
+    let both = render(&[("LIGHTMESH_STUDIO", "1")], &["--no-studio"]);
+    assert!(both.code == Some(2) && both.stderr.contains("'LIGHTMESH_STUDIO'"), "{both:?}");
+    assert_eq!(render(&[("LIGHTMESH_STUDIO", "no")], &["--no-studio"]).code, Some(0));
 }
 
 #[test]

@@ -15,7 +15,9 @@ pub struct Crop {
 
 /// A text that is no [`Crop`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected X,Y,WIDTH,HEIGHT in pixels, the last two at least 1, for example 200,100,640,480")]
+#[error(
+    "expected X,Y,WIDTH,HEIGHT in pixels of the image, the first two at least 0 and the last two at least 1, for example 200,100,640,480"
+)]
 pub struct UnknownCrop;
 
 impl Crop {

@@ -95,7 +95,7 @@ impl SunHours {
         let at_once = suns.len().div_ceil(suns.len().div_ceil(at_once).max(1)).max(1);
         let (mut seen, mut hours) = (None, vec![0.0_f64; width * height]);
         // A night is an image, too: what the pixels see.
-        let night = suns.is_empty().then_some(&suns[..]);
+        let night = suns.is_empty().then_some(suns);
         for suns in suns.chunks(at_once).chain(night) {
             let dark = |(light, _): &(Light, f64)| light.clone().with_intensity(Vec3::ZERO);
             let lights: Lights = suns.iter().map(dark).collect();
