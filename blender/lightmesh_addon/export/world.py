@@ -11,6 +11,7 @@ import bpy
 import lightmesh
 import numpy as np
 
+from . import differences
 from .nodes import feed, has_nodes, output_of
 from .terms import Terms
 
@@ -56,6 +57,15 @@ def read(world: bpy.types.World | None, textures: Textures, notes: Notes) -> Wor
     """The world of a scene, or of `None`."""
     if world is None:
         return World(background=(0.0, 0.0, 0.0))
+    differences.of_world(world, notes)
+    found = _read(world, textures, notes)
+    rays = getattr(world, "cycles_visibility", None)
+    if rays and not rays.camera:
+        found.background = (0.0, 0.0, 0.0)
+    return found
+
+
+def _read(world: bpy.types.World, textures: Textures, notes: Notes) -> World:
     if not has_nodes(world):
         return _plain(tuple(world.color))
     output = output_of(world.node_tree, "OUTPUT_WORLD")
