@@ -93,18 +93,21 @@ class LightmeshEngine(bpy.types.RenderEngine):
             notes.add(text)
 
         # 3. Its passes.
-        self._write(frame, passes.Layers(frame, exported, view, camera.start((self.camera_override or scene.camera).data)), wanted, view_layer)
+        looking = (self.camera_override or scene.camera).evaluated_get(depsgraph)
+        layers = passes.Layers(frame, exported, view, camera.start(looking.data))
+        self._write(frame, layers, wanted, view_layer, camera.is_mirrored(looking))
         self.update_stats("", f"Lightmesh: {renderer.device}")
 
-    def _write(self, frame: lightmesh.Frame, layers: passes.Layers, wanted: list[passes.Pass], view_layer: bpy.types.ViewLayer) -> None:
+    def _write(self, frame: lightmesh.Frame, layers: passes.Layers, wanted: list[passes.Pass], view_layer: bpy.types.ViewLayer, mirrored: bool) -> None:
+        turned = (lambda pixels: pixels[:, ::-1]) if mirrored else (lambda pixels: pixels)
         for layer in wanted:
             self.add_pass(layer.name, len(layer.channels), layer.channels, layer=view_layer.name)
         width, height = frame.size
         result = self.begin_result(0, 0, width, height, layer=view_layer.name)
         found = result.layers[0].passes
-        fill(found["Combined"], passes.combined(frame, layers.exported))
+        fill(found["Combined"], turned(passes.combined(frame, layers.exported)))
         for layer in wanted:
-            fill(found[layer.name], layers.of(layer))
+            fill(found[layer.name], turned(layers.of(layer)))
         self.end_result(result)
         for name, value in layers.metadata(view_layer).items():
             self.get_result().stamp_data_add_field(name, value)

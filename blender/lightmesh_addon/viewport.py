@@ -60,6 +60,8 @@ class Viewport:
             engine.update_stats("Lightmesh", "Rendering" if self.refiner.busy else "")
         if pixels is not None:
             region = context.region
+            if camera.is_mirroring(np.array(context.region_data.view_matrix)):
+                pixels = np.ascontiguousarray(pixels[:, ::-1])
             self.painter.draw(engine, depsgraph.scene, pixels, (region.width, region.height))
 
     def stop(self) -> None:

@@ -82,11 +82,6 @@ def _parallel_clip_end() -> None:
     data.type, data.clip_end = "ORTHO", 8.2
 
 
-def _mirrored() -> None:
-    lit()
-    bpy.context.scene.camera.scale = (-1.0, 1.0, 1.0)
-
-
 def _world_of_some_rays() -> None:
     lit()
     bpy.context.scene.world.cycles_visibility.diffuse = False
@@ -112,7 +107,6 @@ DIFFERENCES = {
     "clip_start": (_clip_start, "Camera “Camera” sees “Ball”, “Box”, “Floor” nearer than its Clip Start"),
     "clip_end": (_clip_end, "Camera “Camera” sees “Ball”, “Box”, “Floor” farther away than its Clip End"),
     "parallel_clip_end": (_parallel_clip_end, "farther away than its Clip End"),
-    "mirrored_camera": (_mirrored, "Camera “Camera” is mirrored by a negative scale"),
     "world_of_some_rays": (_world_of_some_rays, "World “World” is hidden from some rays (diffuse)"),
     "mixed_holdout": (_mixed_holdout, "Material “Veil”: the node “Holdout” is a part of a mixture"),
 }

@@ -21,7 +21,8 @@ class CameraError(Exception):
 
 
 def of_scene(depsgraph: bpy.types.Depsgraph, override: bpy.types.Object | None = None) -> tuple[lightmesh.Camera, dict[str, Any]]:
-    """The camera that a render looks through, the scene's unless another is given, and the settings `size` and, with a border, `crop`."""
+    """The camera that a render looks through, the scene's unless another is given, and the settings `size` and, with a border, `crop`. What a
+    mirrored camera shows is to be flipped, left to right."""
     render, looking = depsgraph.scene.render, override or depsgraph.scene.camera
     if looking is None:
         raise CameraError("The scene has no camera: add one, and choose it in the scene's properties.")
@@ -29,6 +30,8 @@ def of_scene(depsgraph: bpy.types.Depsgraph, override: bpy.types.Object | None =
     aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
     view = of_object(looking.evaluated_get(depsgraph), depsgraph, size, aspect)
     crop = border(render, size)
+    if crop and is_mirrored(looking.evaluated_get(depsgraph)):
+        crop = (size[0] - crop[0] - crop[2], *crop[1:])
     return view, {"size": size, "crop": crop} if crop else {"size": size}
 
 
@@ -48,6 +51,15 @@ def of_object(
     return of_matrices(np.array(obj.matrix_world), np.array(window), size, name=obj.name, back=-start(data))
 
 
+def is_mirrored(obj: bpy.types.Object) -> bool:
+    """Whether the scale of a camera mirrors its image. Lightmesh's cameras cannot: their images are flipped."""
+    return is_mirroring(np.array(obj.matrix_world))
+
+
+def is_mirroring(world: np.ndarray) -> bool:
+    return bool(np.linalg.det(world[:3, :3]) < 0.0)
+
+
 def start(data: bpy.types.Camera) -> float:
     """How far before a camera the one stands that shows what it sees."""
     return data.clip_start if data.type == "ORTHO" else 0.0
@@ -59,8 +71,6 @@ def warn_of(depsgraph: bpy.types.Depsgraph, exported: Exported, notes: Notes, ov
     data, label = looking.data, f"Camera “{looking.name}”"
     if data.dof.use_dof:
         notes.add("Depth of field is left out")
-    if np.linalg.det(np.array(looking.matrix_world)[:3, :3]) < 0.0:
-        notes.add(f"{label} is mirrored by a negative scale, but not here: flip the image instead")
     width, height = full_size(depsgraph.scene.render)
     window = np.array(looking.calc_matrix_camera(depsgraph, x=width, y=height))
     to_camera = np.linalg.inv(np.array(looking.matrix_world.normalized()))
@@ -112,7 +122,7 @@ def _is_cut(corners: np.ndarray) -> bool:
 
 
 def of_matrices(world: np.ndarray, window: np.ndarray, size: tuple[int, int], name: str = "", back: float = 0.0) -> lightmesh.Camera:
-    """The camera with the matrix `world` and the projection `window`. Orthographic ones are moved `back`: a viewport sees what is behind its
+    """The camera with the matrix `world` and the projection `window`; of mirrored ones, what is to be flipped. Orthographic ones are moved `back`: a viewport sees what is behind its
     eye, too."""
     right, up, behind = (column / np.linalg.norm(column) for column in world[:3, :3].T)
     position, direction = world[:3, 3], -behind
@@ -124,6 +134,8 @@ def of_matrices(world: np.ndarray, window: np.ndarray, size: tuple[int, int], na
         shift = (-0.5 * window[0, 3] * window[1, 1] / window[0, 0], -0.5 * window[1, 3])
         lens = {"height": 2.0 / window[1, 1]}
         position = position - back * direction
+    if is_mirroring(world):
+        shift = (-shift[0], shift[1])
     return lightmesh.Camera(position, direction=direction, up=up, shift=tuple(map(float, shift)), name=name, **lens)
 
 
