@@ -200,7 +200,7 @@ def test_the_same_sky_is_rendered_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sky, "_kept", {})
     monkeypatch.setattr(sky, "_rendered", lambda key: (made.append(key), np.ones((4, 8, 3), np.float32))[1])
     node = textured(in_the_open(), "ShaderNodeTexSky")
-    for elevation in (0.2, 0.2, 0.4, 0.2):
-        node.sun_elevation = elevation
+    for elevation, turn in ((0.2, 0.0), (0.2, 1.0), (0.4, 2.0), (0.2, 3.0)):
+        node.sun_elevation, node.sun_rotation = elevation, turn
         lightmesh()
     assert len(made) == 2

@@ -6,6 +6,7 @@ A render cannot render something else before it, and skies have a table or an in
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 import tempfile
@@ -21,6 +22,9 @@ LIMIT = 120.0
 #: So many skies are kept, for renders and viewports to come.
 KEPT = 8
 
+#: Kinds of skies without a sun: a direction says where it would be.
+WITHOUT_SUN = {"PREETHAM", "HOSEK_WILKIE"}
+
 _kept = {}
 
 
@@ -29,11 +33,17 @@ class SkyError(Exception):
 
 
 def key_of(node: bpy.types.Node) -> str:
-    """All settings of a Sky Texture: equal ones show the same."""
+    """All settings of a Sky Texture but for its turn: equal ones show the same, turned."""
     own = [name for name in node.bl_rna.properties.keys() if name not in bpy.types.ShaderNode.bl_rna.properties]
     found = {name: getattr(node, name) for name in own if not node.bl_rna.properties[name].is_readonly}
     plain = {name: value if isinstance(value, (str, bool, int, float)) else _numbers(value) for name, value in found.items()}
+    plain["sun_rotation"] = 0.0
     return json.dumps({name: value for name, value in plain.items() if value is not None}, sort_keys=True)
+
+
+def turn_of(node: bpy.types.Node) -> float:
+    """How far a sky is turned clockwise, seen from above, degrees: a turn needs no new panorama."""
+    return 0.0 if node.sky_type in WITHOUT_SUN else math.degrees(node.sun_rotation) % 360.0
 
 
 def _numbers(value: object) -> list[float] | None:
@@ -44,7 +54,7 @@ def _numbers(value: object) -> list[float] | None:
 
 
 def panorama(node: bpy.types.Node) -> np.ndarray:
-    """What a Sky Texture shows, (H, W, 3) `float32`, row 0 at the top, with +Y in its middle and +X to the right."""
+    """What a Sky Texture shows, (H, W, 3) `float32`, row 0 at the top, with +Y in its middle and +X to the right, before its turn."""
     key = key_of(node)
     if key not in _kept:
         while len(_kept) >= KEPT:

@@ -193,8 +193,8 @@ class Reader:
         except sky.SkyError as error:
             self.terms.warn(node, f"could not be rendered to a panorama ({error}), and is Lightmesh's clear sky: see that Blender can be started")
             return self._clear_sky(node, factor)
-        turn, rotation = np.eye(3), 0.0
-        if "Vector" in node.inputs:
+        turn, rotation = np.eye(3), sky.turn_of(node)
+        if "Vector" in node.inputs and node.sky_type in sky.WITHOUT_SUN:
             turn = self._turn(source.input("Vector"))
         if not np.allclose(turn, np.eye(3)):
             # The panorama of a sky has +Y in its middle, that of an image +X.
