@@ -125,12 +125,12 @@ def in_the_open() -> bpy.types.World:
 
 
 def check_background(ours: Picture, theirs: Picture) -> None:
-    """The sky is that of Cycles, but for a few pixels at the horizon and around the sun, which are larger in a panorama."""
+    """The sky is that of Cycles, but for the row of pixels at the horizon, and a few around the sun."""
     where = (ours.channels["Depth.Z"] > 1e9) & (theirs.channels["Depth.Z"] > 1e9)
     assert where.mean() > 0.3
     scale = float(np.percentile(theirs.rgb[where], 95.0))
     a, b = (255.0 * np.clip(of.rgb[where] / scale, 0.0, 1.0) ** (1.0 / 2.2) for of in (ours, theirs))
-    assert np.percentile(np.abs(a - b), 99.0) <= 20.0
+    assert np.percentile(np.abs(a - b), 98.0) <= 20.0
     assert np.abs(a - b).mean() <= 2.0
 
 
