@@ -81,7 +81,8 @@ class LightmeshEngine(bpy.types.RenderEngine):
         view, framing = camera.of_scene(depsgraph, self.camera_override)
         exported = Exporter(depsgraph, notes).run(self._stop_if_asked)
         wanted = passes.wanted(view_layer, exported.light_names)
-        chosen = {**settings.of_scene(scene), **exported.settings, **framing, "layers": bool(wanted)}
+        camera.warn_of(depsgraph, exported, notes, self.camera_override)
+        chosen = {**settings.of_scene(scene), **exported.settings, **framing, "layers": bool(wanted) or exported.has_holdouts}
 
         # 2. The image. What the next frame can use is kept.
         renderer = session.renderer(*settings.device(scene))
@@ -92,18 +93,21 @@ class LightmeshEngine(bpy.types.RenderEngine):
             notes.add(text)
 
         # 3. Its passes.
-        self._write(frame, passes.Layers(frame, exported, view), wanted, view_layer)
+        looking = (self.camera_override or scene.camera).evaluated_get(depsgraph)
+        layers = passes.Layers(frame, exported, view, camera.start(looking.data))
+        self._write(frame, layers, wanted, view_layer, camera.is_mirrored(looking))
         self.update_stats("", f"Lightmesh: {renderer.device}")
 
-    def _write(self, frame: lightmesh.Frame, layers: passes.Layers, wanted: list[passes.Pass], view_layer: bpy.types.ViewLayer) -> None:
+    def _write(self, frame: lightmesh.Frame, layers: passes.Layers, wanted: list[passes.Pass], view_layer: bpy.types.ViewLayer, mirrored: bool) -> None:
+        turned = (lambda pixels: pixels[:, ::-1]) if mirrored else (lambda pixels: pixels)
         for layer in wanted:
             self.add_pass(layer.name, len(layer.channels), layer.channels, layer=view_layer.name)
         width, height = frame.size
         result = self.begin_result(0, 0, width, height, layer=view_layer.name)
         found = result.layers[0].passes
-        fill(found["Combined"], passes.combined(frame))
+        fill(found["Combined"], turned(passes.combined(frame, layers.exported)))
         for layer in wanted:
-            fill(found[layer.name], layers.of(layer))
+            fill(found[layer.name], turned(layers.of(layer)))
         self.end_result(result)
         for name, value in layers.metadata(view_layer).items():
             self.get_result().stamp_data_add_field(name, value)
@@ -129,8 +133,6 @@ class LightmeshEngine(bpy.types.RenderEngine):
             notes.add("Motion blur is left out")
         if render.use_multiview:
             notes.add("Stereo views are all rendered from the camera itself")
-        if scene.camera and scene.camera.type == "CAMERA" and scene.camera.data.dof.use_dof:
-            notes.add("Depth of field is left out")
         if view_layer.material_override:
             notes.add("The material override of the view layer is left out")
         for name in passes.unsupported(view_layer):

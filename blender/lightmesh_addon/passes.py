@@ -79,21 +79,32 @@ def unsupported(view_layer: bpy.types.ViewLayer) -> list[str]:
     return [name for attribute, name in known.items() if getattr(view_layer, attribute, False)]
 
 
-def combined(frame: lightmesh.Frame) -> np.ndarray:
-    """(H, W, 4), rows upwards: premultiplied, scene-linear."""
+def combined(frame: lightmesh.Frame, exported: Exported | None = None) -> np.ndarray:
+    """(H, W, 4), rows upwards: premultiplied, scene-linear. Holdouts of what was `exported` have holes; they need a frame with layers."""
     height, width, _ = frame.rgb.shape
     pixels = np.ones((height, width, 4), np.float32)
     pixels[..., :3] = frame.rgb[::-1]
     if frame.alpha is not None:
         pixels[..., 3] = frame.alpha[::-1]
+    if exported is not None and exported.has_holdouts:
+        # A surface may be held out as an object and by its material.
+        held_out = np.maximum(share(frame.ids, exported.holdouts), share(frame.material_ids, exported.holdout_materials))
+        pixels[..., 3] = np.maximum(pixels[..., 3] - held_out[::-1], 0.0)
     return pixels
+
+
+def share(mattes: lightmesh.Mattes, names: set[str]) -> np.ndarray:
+    """(H, W): the share of each pixel that things of these names have."""
+    held_out = np.array([False, *(name in names for name in mattes.names)])
+    return sum(np.where(held_out[thing], part, 0.0) for thing, part in mattes.ranks)
 
 
 class Layers:
     """The passes of one frame."""
 
-    def __init__(self, frame: lightmesh.Frame, exported: Exported, camera: lightmesh.Camera) -> None:
-        self.frame, self.exported, self.camera = frame, exported, camera
+    def __init__(self, frame: lightmesh.Frame, exported: Exported, camera: lightmesh.Camera, start: float = 0.0) -> None:
+        """`start`: how far before Blender's camera this one is."""
+        self.frame, self.exported, self.camera, self.start = frame, exported, camera, start
         self._mattes = {}
 
     def of(self, wanted: Pass) -> np.ndarray:
@@ -117,7 +128,7 @@ class Layers:
     def depth(self) -> np.ndarray:
         """Distances along the view axis, not along rays: Blender's Z."""
         away = self.frame.position - np.array(self.camera.position, np.float32)
-        depth = away @ np.array(self.camera.direction, np.float32)
+        depth = away @ np.array(self.camera.direction, np.float32) + self.start
         return np.where(np.isfinite(self.frame.depth), depth, FAR)
 
     def _matte(self, kind: str, level: int) -> np.ndarray:

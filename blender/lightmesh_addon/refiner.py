@@ -80,7 +80,7 @@ class Refiner:
                 for share, stage in settings.stages(chosen):
                     part = tuple(max(1, round(share * side)) for side in size)
                     frame = device.render(prepared, cancel=cancel, size=part, **stage)
-                    self._publish(pixels=passes.combined(frame))
+                    self._publish(pixels=passes.combined(frame, exported))
             except lightmesh.Cancelled:
                 pass
             except lightmesh.LightmeshError as error:

@@ -55,6 +55,11 @@ def study(depsgraph: bpy.types.Depsgraph, notes: Notes) -> Study:
     sun = scene.lightmesh.sun
     view, framing = camera.of_scene(depsgraph)
     exported = Exporter(depsgraph, notes, sky=sky(sun)).run()
+    if exported.has_holdouts:
+        notes.add("Holdouts are black in a study: render without it to have holes in their place")
+    camera.warn_of(depsgraph, exported, notes)
+    if camera.is_mirrored(depsgraph.scene.camera.evaluated_get(depsgraph)):
+        notes.add(f"Camera “{depsgraph.scene.camera.name}” is mirrored by a negative scale: flip the images of a study, left to right")
     made = exported.scene(view)
     for text in made.warnings:
         notes.add(text)

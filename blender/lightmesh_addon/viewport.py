@@ -60,6 +60,8 @@ class Viewport:
             engine.update_stats("Lightmesh", "Rendering" if self.refiner.busy else "")
         if pixels is not None:
             region = context.region
+            if camera.is_mirroring(np.array(context.region_data.view_matrix)):
+                pixels = np.ascontiguousarray(pixels[:, ::-1])
             self.painter.draw(engine, depsgraph.scene, pixels, (region.width, region.height))
 
     def stop(self) -> None:
@@ -71,7 +73,7 @@ class Viewport:
             return
         scene, region, view = depsgraph.scene, context.region, context.region_data
         size = (max(1, region.width), max(1, region.height))
-        chosen = {**settings.of_scene(scene), **self.exported.settings}
+        chosen = {**settings.of_scene(scene), **self.exported.settings, "layers": self.exported.has_holdouts}
         device = settings.device(scene)
         key = (size, tuple(sorted(chosen.items())), device, *(tuple(map(tuple, m)) for m in (view.view_matrix, view.window_matrix)))
         if key == self._view:

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from support import HEIGHT, WIDTH, Picture, camera, light, lightmesh, overlap, picture, stage
+from support import HEIGHT, WIDTH, Picture, agreement, camera, cycles, light, lightmesh, overlap, picture, stage
 
 CAMERAS = {
     "automatic": {"lens": 35.0},
@@ -36,6 +36,22 @@ def test_camera(name: str, size: tuple[int, int]) -> None:
 
 def cycles_samples(scene: bpy.types.Scene) -> None:
     scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.pixel_filter_type = 16, False, "BOX"
+
+
+@pytest.mark.parametrize("scale", [(-1.0, 1.0, 1.0), (1.0, -1.0, 1.0)], ids=["sideways", "upside_down"])
+@pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
+def test_mirrored(kind: str, scale: tuple[float, float, float]) -> None:
+    """A negative scale mirrors the image and its passes, with shift and border."""
+    stage()
+    light("SUN", 2.0)
+    camera(type=kind, lens=35.0, ortho_scale=8.0, shift_x=0.1, shift_y=-0.05).scale = scale
+    bpy.context.view_layer.use_pass_position = True
+    render = bpy.context.scene.render
+    render.use_border = True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.1, 0.7, 0.0, 1.0
+    ours, theirs = lightmesh(), cycles()
+    agreement(f"mirrored_{kind.lower()}_{scale[0]:g}", ours, theirs).check()
+    assert np.median(np.abs(ours.pass_("Position", "XYZ") - theirs.pass_("Position", "XYZ"))) < 0.05
 
 
 def test_border() -> None:

@@ -20,6 +20,7 @@ import lightmesh
 import numpy as np
 from mathutils import Matrix
 
+from . import differences
 from .nodes import feed, output_of
 from .terms import NumberTerm, Terms
 
@@ -35,18 +36,26 @@ LEANING = 1e-4
 def light(obj: bpy.types.Object, matrix: Matrix, notes: Notes, name: str | None = None) -> lightmesh.Light | None:
     """A light of the evaluated object `obj` at `matrix`, or `None` if it is dark."""
     data, matrix = obj.data, np.array(matrix, float)
+    if is_portal(data):
+        # Portals tell Cycles where the world's light comes in, and give none.
+        return None
     label = f"Light “{obj.name}”"
     strength = _strength(data, label, notes)
     if not strength.any():
         return None
     if not data.use_shadow:
         notes.add(f"{label} casts no shadow in the scene, but does here")
+    differences.of_linking(obj, label, notes)
     if obj.visible_camera:
         notes.add(f"{label} is seen by the camera in the scene, but not here")
     if not getattr(obj, "visible_diffuse", True) or not getattr(obj, "visible_glossy", True):
         notes.add(f"{label} lights only some kinds of surfaces in the scene, but all here")
     make = {"POINT": _point, "SPOT": _spot, "SUN": _sun, "AREA": _area}[data.type]
     return make(data, matrix, strength, label, notes, falloff="inverse-square", name=name or obj.name)
+
+
+def is_portal(data: bpy.types.Light) -> bool:
+    return data.type == "AREA" and bool(getattr(getattr(data, "cycles", None), "is_portal", False))
 
 
 def _strength(data: bpy.types.Light, label: str, notes: Notes) -> np.ndarray:

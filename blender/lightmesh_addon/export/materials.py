@@ -43,21 +43,28 @@ class Materials:
         self._made = {}
         #: Whether any of them shines.
         self.emit = False
+        #: Names of materials that are holdouts all over.
+        self.holdouts = set()
 
-    def of(self, material: bpy.types.Material | None, catcher: bool = False) -> Made:
-        """A material, or for `None` Blender's default one; `catcher`: only the shadows on it are seen."""
-        key = (material.name_full if material else None, catcher)
+    def of(self, material: bpy.types.Material | None, catcher: bool = False, holdout: bool = False) -> Made:
+        """A material, or for `None` Blender's default one; `catcher`: only the shadows on it are seen; `holdout`: black, where it is."""
+        key = (material.name_full if material else None, catcher, holdout)
         if key not in self._made:
-            self._made[key] = self._make(material, catcher)
+            self._made[key] = self._make(material, catcher, holdout)
         return self._made[key]
 
-    def _make(self, material: bpy.types.Material | None, catcher: bool) -> Made:
+    def _make(self, material: bpy.types.Material | None, catcher: bool, holdout: bool) -> Made:
         if catcher:
             name = material.name if material else "shadow catcher"
             return Made(lightmesh.Material(0.8, catcher=True, name=name), f"catcher {name}")
+        if material is None and holdout:
+            return Made(lightmesh.Material(0.0, name="holdout"), "holdout")
         if material is None:
             return Made(lightmesh.Material.principled(0.8, **DEFAULT, name="default"), "default")
-        return self._from(material, self._surface(material))
+        surface = self._surface(material)
+        if surface.holdout:
+            self.holdouts.add(material.name)
+        return self._from(material, surface.blackened() if holdout else surface)
 
     def _surface(self, material: bpy.types.Material) -> Surface:
         if not has_nodes(material):

@@ -12,7 +12,7 @@ import lightmesh
 import numpy as np
 from mathutils import Matrix
 
-from . import geometry, lights, world
+from . import differences, geometry, lights, world
 from .materials import Materials
 from .textures import Textures
 from .visibility import RenderVisibility
@@ -47,6 +47,16 @@ class Exported:
     #: Pass indices of objects and materials by name.
     object_indices: dict[str, int] = field(default_factory=dict)
     material_indices: dict[str, int] = field(default_factory=dict)
+    #: Names of objects and of materials that cut holes into the image.
+    holdouts: set[str] = field(default_factory=set)
+    holdout_materials: set[str] = field(default_factory=set)
+
+    #: Names, places and arrays of what there is.
+    meshes: Callable[[], list[tuple[str, list[np.ndarray], geometry.Arrays]]] = list
+
+    @property
+    def has_holdouts(self) -> bool:
+        return bool(self.holdouts or self.holdout_materials)
 
     def scene(self, camera: lightmesh.Camera, before: "Exported | None" = None, prepared: lightmesh.PreparedScene | None = None) -> lightmesh.Scene:
         """The scene. If `before`, which was `prepared`, has the same objects, it is that with other lights and another camera: what was
@@ -125,6 +135,7 @@ class Exporter:
         self.materials = Materials(notes, textures)
         self.groups, self.lights, self.light_names, self.used = {}, [], [], set()
         self.object_indices, self.material_indices = {}, {}
+        self.holdouts = set()
 
     def run(self, stop: Callable[[], None] = lambda: None) -> Exported:
         """What there is in the scene. `stop` is called for each object, and may raise."""
@@ -133,6 +144,7 @@ class Exporter:
             self._instance(instance)
         surroundings = world.of_sky(self.sky) if self.sky else world.read(self._world(), self.materials.textures, self.notes)
         self.store.arrays = {key: kept for key, kept in self.store.arrays.items() if key in self.used}
+        self._warn_of_holdouts(surroundings)
         return Exported(
             self._geometry,
             self.lights,
@@ -144,6 +156,9 @@ class Exporter:
             self._settings(surroundings),
             self.object_indices,
             self.material_indices,
+            self.holdouts,
+            self.materials.holdouts,
+            lambda: [(name, places, group.arrays) for group in self._shown() for name, places in group.places.items()],
         )
 
     def _settings(self, surroundings: world.World) -> dict[str, Any]:
@@ -152,6 +167,13 @@ class Exporter:
             # The light of surfaces is found by what gathers it.
             settings["ambient_light"] = "mesh"
         return settings
+
+    def _warn_of_holdouts(self, surroundings: world.World) -> None:
+        """Holdouts are black, so that pixels which they share with others have the light of the others."""
+        wish = self.depsgraph.scene.lightmesh.ambient_light
+        if wish == "GATHERED" or (wish == "AUTO" and (surroundings.lights or self.materials.emit)):
+            for name in sorted(self.holdouts):
+                self.notes.add(f"Object “{name}” is a holdout: what is around it gets no light from it here, as if it were black")
 
     def _shown(self) -> list[_Group]:
         return [group for group in self.groups.values() if group is not None]
@@ -185,7 +207,7 @@ class Exporter:
         if obj.type == "LIGHT":
             self._light(obj, instance.matrix_world)
         elif obj.type in SURFACES:
-            self._surface(obj, instance.matrix_world)
+            self._surface(obj, instance)
         elif obj.type in UNSEEN:
             self.notes.add(f"Object “{obj.name}” is {UNSEEN[obj.type]}, which is left out")
 
@@ -204,33 +226,42 @@ class Exporter:
         self.lights.append(made if name == obj.name else made.replaced(name=name))
         names.append(name)
 
-    def _surface(self, obj: bpy.types.Object, matrix: Matrix) -> None:
-        if obj.is_holdout:
-            self.notes.add(f"Object “{obj.name}” is a holdout, but is seen here")
+    def _surface(self, obj: bpy.types.Object, instance: bpy.types.DepsgraphObjectInstance) -> None:
         if not obj.visible_camera or not obj.visible_shadow or not obj.visible_diffuse:
             self.notes.add(f"Object “{obj.name}” is hidden from some rays, but not here")
-        group = self._group(obj)
+        differences.of_linking(obj, f"Object “{obj.name}”", self.notes)
+        # Flags of collections are those of the object that shows an instance.
+        shown_by = instance.parent if instance.is_instance and instance.parent else obj
+        holdout = shown_by.original.holdout_get(view_layer=self.depsgraph.view_layer)
+        if not holdout and shown_by.original.indirect_only_get(view_layer=self.depsgraph.view_layer):
+            self.notes.add(f"Object “{shown_by.name}” is only seen indirectly in the scene (a collection of it is Indirect Only), but by the camera, too, here")
+        group = self._group(obj, holdout)
         if group:
-            group.places.setdefault(obj.name, []).append(np.array(matrix, order="C"))
-            self.object_indices[obj.name] = obj.pass_index
+            name = obj.name
+            if holdout:
+                # Instances of an object may be held out in one place and seen in another.
+                name = name if shown_by is obj else f"{name} of {shown_by.name}"
+                self.holdouts.add(name)
+            group.places.setdefault(name, []).append(np.array(instance.matrix_world, order="C"))
+            self.object_indices[name] = obj.pass_index
 
-    def _group(self, obj: bpy.types.Object) -> _Group | None:
+    def _group(self, obj: bpy.types.Object, holdout: bool) -> _Group | None:
         """What the object shows, read once for all objects that show the same data with the same materials."""
         data = obj.data
         slots = tuple(slot.material.name_full if slot.material else None for slot in obj.material_slots if slot.link == "OBJECT")
-        key = (data.as_pointer() if data else obj.as_pointer(), obj.type, data.name if data else "", slots, obj.is_shadow_catcher)
+        key = (data.as_pointer() if data else obj.as_pointer(), obj.type, data.name if data else "", slots, obj.is_shadow_catcher, holdout)
         if key not in self.groups:
-            self.groups[key] = self._read(obj, key)
+            self.groups[key] = self._read(obj, key, holdout)
         self.used.add(key)
         return self.groups[key]
 
-    def _read(self, obj: bpy.types.Object, key: tuple) -> _Group | None:
+    def _read(self, obj: bpy.types.Object, key: tuple, holdout: bool) -> _Group | None:
         mesh = obj.to_mesh()
         if mesh is None:
             return None
         try:
             used = self._materials_of(obj, mesh)
-            made = [self._material(material, obj.is_shadow_catcher) for material in used]
+            made = [self._material(material, obj.is_shadow_catcher, holdout) for material in used]
             kept = self.store.arrays.get(key)
             arrays = kept[0] if kept else geometry.read(mesh, made, self.notes)
         finally:
@@ -251,11 +282,11 @@ class Exporter:
                 used[index] = slot.material
         return used or [None]
 
-    def _material(self, material: bpy.types.Material | None, catcher: bool) -> Made:
+    def _material(self, material: bpy.types.Material | None, catcher: bool, holdout: bool) -> Made:
         if material is not None:
             material = material.evaluated_get(self.depsgraph)
             self.material_indices[material.name] = material.pass_index
-        return self.materials.of(material, catcher)
+        return self.materials.of(material, catcher and not holdout, holdout)
 
     def _geometry(self) -> list[lightmesh.Geometry]:
         """Each kind of geometry once, in all of its places. Objects keep their names."""

@@ -43,6 +43,12 @@ class Surface:
     alpha: NumberTerm = NumberTerm(1.0)
     normal: Any = None
     normal_scale: float = 1.0
+    #: Whether it cuts a hole into the image.
+    holdout: bool = False
+
+    def blackened(self) -> Surface:
+        """As black as a hole, where it is there at all."""
+        return Surface(BLACK, alpha=self.alpha)
 
     @property
     def unseen(self) -> bool:
@@ -54,6 +60,8 @@ class Surfaces:
 
     def __init__(self, material: bpy.types.Material, notes: Notes) -> None:
         self.terms = Terms(f"Material “{material.name}”", notes)
+        #: A node that cuts holes into the image.
+        self.held_out = None
         self.readers = {
             "BSDF_PRINCIPLED": self._principled,
             "BSDF_DIFFUSE": self._diffuse,
@@ -71,6 +79,13 @@ class Surfaces:
         }
 
     def read(self, feed: Feed) -> Surface:
+        """The surface of a material."""
+        found = self._read(feed)
+        if self.held_out and not found.holdout:
+            self.terms.warn(self.held_out, "is a part of a mixture, which cuts no hole into the image here")
+        return found
+
+    def _read(self, feed: Feed) -> Surface:
         """The surface that a shader socket gets."""
         node = feed.node
         if node is None:
@@ -146,8 +161,8 @@ class Surfaces:
         return Surface(color=self.terms.color(feed.input("Color")))
 
     def _holdout(self, feed: Feed) -> Surface:
-        self.terms.warn(feed.node, "is shown as a black surface")
-        return Surface(color=BLACK)
+        self.held_out = feed.node
+        return Surface(color=BLACK, holdout=True)
 
     def _emission(self, feed: Feed) -> Surface:
         strength = self.terms.number(feed.input("Strength"))
@@ -158,7 +173,7 @@ class Surfaces:
 
     def _mix(self, feed: Feed) -> Surface:
         share = self._share(feed)
-        first, second = (self.read(feed.input(index)) for index in (1, 2))
+        first, second = (self._read(feed.input(index)) for index in (1, 2))
         if not share.constant:
             if first.unseen:
                 return replace(second, alpha=share)
@@ -201,7 +216,7 @@ class Surfaces:
         return replace(surface, alpha=NumberTerm(surface.alpha.offset * part))
 
     def _add(self, feed: Feed) -> Surface:
-        first, second = (self.read(feed.input(index)) for index in (0, 1))
+        first, second = (self._read(feed.input(index)) for index in (0, 1))
         for emitter, other in ((first, second), (second, first)):
             if emitter.color.black and emitter.specular == 0.0 and other.emission.black:
                 return replace(other, emission=emitter.emission) if not emitter.emission.black else other

@@ -53,6 +53,11 @@ def _differs(modifier: bpy.types.Modifier) -> bool:
 
 
 def _names(objects: Iterable[bpy.types.Object]) -> str:
-    names = sorted(obj.name for obj in objects)
+    return names_of(obj.name for obj in objects)
+
+
+def names_of(objects: Iterable[str]) -> str:
+    """The first of these names, and how many more there are; empty without any."""
+    names = sorted(objects)
     more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
     return ", ".join(f"“{name}”" for name in names[:NAMED]) + more

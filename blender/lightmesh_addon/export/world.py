@@ -11,6 +11,7 @@ import bpy
 import lightmesh
 import numpy as np
 
+from . import differences, sky
 from .nodes import feed, has_nodes, output_of
 from .terms import Terms
 
@@ -22,18 +23,9 @@ if TYPE_CHECKING:
 #: A world of one colour is a panorama of this size.
 PLAIN = (8, 16, 3)
 #: Lightmesh's clear sky is scaled so that white which faces the sun shows about 1; these are the radiances that it shows in Cycles, by the
-#: elevation of the sun in degrees, under skies with a sun.
+#: elevation of the sun in degrees.
 ELEVATIONS = (1.0, 5.0, 10.0, 20.0, 35.0, 60.0, 90.0)
-SINGLE = (2.4, 12.9, 23.5, 32.9, 38.2, 41.9, 43.9)
-SUNNY = {"NISHITA": SINGLE, "SINGLE_SCATTERING": SINGLE, "MULTIPLE_SCATTERING": (2.9, 13.0, 24.3, 35.5, 42.5, 47.8, 50.0)}
-#: What a white floor shows in Cycles under skies without a sun, which stands 35° high elsewhere.
-SUNLESS = {
-    "PREETHAM": (0.32, 0.46, 0.81),
-    "HOSEK_WILKIE": (0.04, 0.066, 0.11),
-    "NISHITA": (2.2, 2.8, 3.9),
-    "SINGLE_SCATTERING": (2.2, 2.7, 3.9),
-    "MULTIPLE_SCATTERING": (2.3, 4.0, 6.9),
-}
+SUNNY = (2.4, 12.9, 23.5, 32.9, 38.2, 41.9, 43.9)
 
 
 @dataclass
@@ -56,6 +48,15 @@ def read(world: bpy.types.World | None, textures: Textures, notes: Notes) -> Wor
     """The world of a scene, or of `None`."""
     if world is None:
         return World(background=(0.0, 0.0, 0.0))
+    differences.of_world(world, notes)
+    found = _read(world, textures, notes)
+    rays = getattr(world, "cycles_visibility", None)
+    if rays and not rays.camera:
+        found.background = (0.0, 0.0, 0.0)
+    return found
+
+
+def _read(world: bpy.types.World, textures: Textures, notes: Notes) -> World:
     if not has_nodes(world):
         return _plain(tuple(world.color))
     output = output_of(world.node_tree, "OUTPUT_WORLD")
@@ -66,9 +67,9 @@ def read(world: bpy.types.World | None, textures: Textures, notes: Notes) -> Wor
     return Reader(world, textures, notes).shader(feed(output.inputs["Surface"]))
 
 
-def of_sky(sky: str) -> World:
+def of_sky(text: str) -> World:
     """Lightmesh's own sky, as settings of a render say it."""
-    return World(settings={"sky": sky}, digest=sky)
+    return World(settings={"sky": text}, digest=text)
 
 
 def _plain(color: Sequence[float]) -> World:
@@ -135,7 +136,7 @@ class Reader:
         if node is not None and node.type == "TEX_ENVIRONMENT":
             return self._panorama(color, factor)
         if node is not None and node.type == "TEX_SKY":
-            return self._sky(node, factor)
+            return self._sky(color, factor)
         term = self.terms.color(color)
         if not term.constant:
             self.terms.warn(node, "has no counterpart in a world: the world has its factor as colour")
@@ -184,17 +185,30 @@ class Reader:
             return np.diag(inverse) @ turn.T @ inner
         return turn @ np.diag(scale) @ inner
 
-    def _sky(self, node: bpy.types.Node, factor: np.ndarray) -> World:
-        """Lightmesh's own clear sky, with the sun at the same place; one colour for skies without a sun, which Lightmesh does not have."""
-        kind = node.sky_type
-        if kind not in SUNNY or not node.sun_disc:
-            self.terms.warn(node, "is a sky without a sun, for which one colour stands")
-            return _plain(np.array(SUNLESS[kind]) * factor)
-        self.terms.warn(node, "is shown as Lightmesh's clear sky, which is not the same; it replaces the scene's suns")
+    def _sky(self, source: Feed, factor: np.ndarray) -> World:
+        """The panorama that Cycles shows; its sun becomes a light."""
+        node = source.node
+        try:
+            pixels = sky.panorama(node)
+        except sky.SkyError as error:
+            self.terms.warn(node, f"could not be rendered to a panorama ({error}), and is Lightmesh's clear sky: see that Blender can be started")
+            return self._clear_sky(node, factor)
+        turn, rotation = np.eye(3), sky.turn_of(node)
+        if "Vector" in node.inputs and node.sky_type in sky.WITHOUT_SUN:
+            turn = self._turn(source.input("Vector"))
+        if not np.allclose(turn, np.eye(3)):
+            # The panorama of a sky has +Y in its middle, that of an image +X.
+            quarter = rotation_matrix((0.0, 0.0, -0.5 * np.pi))
+            pixels, rotation = resampled(pixels, quarter @ turn, equirectangular), 90.0
+        pixels = np.ascontiguousarray(pixels * factor.astype(np.float32), np.float32)
+        digest = f"{hashlib.blake2b(pixels).hexdigest()} {rotation}"
+        return World(lightmesh.Environment(pixels, up="z", rotation=rotation, name=node.name), digest=digest)
+
+    def _clear_sky(self, node: bpy.types.Node, factor: np.ndarray) -> World:
+        """Lightmesh's own sky: its sun stands at the same place, if the node has one."""
         elevation, azimuth = np.degrees(node.sun_elevation), np.degrees(node.sun_rotation)
-        level = np.interp(elevation, ELEVATIONS, SUNNY[kind]) * float(factor.mean())
-        sky = f"clear;sun={min(max(elevation, 0.0), 90.0):g},{azimuth % 360.0:g};strength={level:g}"
-        return of_sky(sky)
+        level = np.interp(elevation, ELEVATIONS, SUNNY) * float(factor.mean())
+        return of_sky(f"clear;sun={min(max(elevation, 0.0), 90.0):g},{azimuth % 360.0:g};strength={level:g}")
 
 
 def rotation_matrix(angles: Sequence[float]) -> np.ndarray:
