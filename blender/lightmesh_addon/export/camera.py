@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 #: So many triangles near a clip plane are looked at one by one; more of them reach beyond it.
 LOOKED_AT = 4000
 
+
 class CameraError(Exception):
     """A camera that cannot be shown."""
 
@@ -122,8 +123,8 @@ def _is_cut(corners: np.ndarray) -> bool:
 
 
 def of_matrices(world: np.ndarray, window: np.ndarray, size: tuple[int, int], name: str = "", back: float = 0.0) -> lightmesh.Camera:
-    """The camera with the matrix `world` and the projection `window`; of mirrored ones, what is to be flipped. Orthographic ones are moved `back`: a viewport sees what is behind its
-    eye, too."""
+    """The camera with the matrix `world` and the projection `window`; of mirrored ones, what is to be flipped. Orthographic ones are moved `back`:
+    a viewport sees what is behind its eye, too."""
     right, up, behind = (column / np.linalg.norm(column) for column in world[:3, :3].T)
     position, direction = world[:3, 3], -behind
     if window[3, 3] == 0.0:
