@@ -379,6 +379,9 @@ def test_frames_cancelled_stay(tmp_path: Path) -> None:
     look_at(bpy.context.scene.camera, (0.0, 0.0, 0.0))
     sun = bpy.context.scene.lightmesh.sun
     sun.begin, sun.end, sun.step = 9.0, 15.0, 60
+    # Frames take long enough for somebody to hear of them before they end.
+    settings = bpy.context.scene.lightmesh
+    settings.mode, settings.samples, settings.pixel_samples = "AREA", 4096, 16
     asked = sun_study.study(bpy.context.evaluated_depsgraph_get(), Notes())
     files = output.Output(tmp_path / "a.#.exr", {"overwrite": True})
 
@@ -390,6 +393,4 @@ def test_frames_cancelled_stay(tmp_path: Path) -> None:
 
     job = Job(work)
     assert job.wait(60.0) and job.cancelled and job.error is None
-    # Small frames may end before anybody hears of them.
-    names = sorted(file.name for file in tmp_path.glob("*.exr"))
-    assert names == [f"a.{number}.exr" for number in range(1, len(names) + 1)] and 1 <= len(names) < 7
+    assert sorted(file.name for file in tmp_path.glob("*.exr")) == ["a.1.exr"]

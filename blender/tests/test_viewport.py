@@ -185,16 +185,14 @@ def test_only_changed_meshes_are_read(view: View, monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_new_request_stops_the_old_one(view: View) -> None:
-    """A picture of many minutes does not keep the next one waiting."""
+    """A picture of many minutes does not keep the next one waiting: it would for longer than `settle` waits."""
     settings = bpy.context.scene.lightmesh
     settings.mode, settings.samples, settings.pixel_samples = "AREA", 16384, 128
     view.update()
     view.draw()
     time.sleep(0.5)
     settings.mode, settings.samples, settings.pixel_samples = "LISTS", 16, 4
-    begin = time.monotonic()
     view.settle()
-    assert time.monotonic() - begin < 30.0
 
 
 def test_stop_ends_the_thread(view: View) -> None:

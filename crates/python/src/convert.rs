@@ -1,6 +1,7 @@
 //! What Python gives: vectors, colours and arrays.
 
 use glam::{Affine2, DMat4, DVec3, Vec2, Vec3};
+use lightmesh::scene::is_affine;
 use numpy::{
     PyArray1, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray, PyReadonlyArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods,
@@ -22,9 +23,8 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Vector {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Vector> {
-        let numbers: Vec<f64> = object
-            .extract()
-            .map_err(|_| errors::argument(format!("give three numbers, x, y and z, not {}", kind(&object))))?;
+        let numbers: Vec<f64> =
+            object.extract().map_err(|_| errors::wrong_type("three numbers, x, y and z", &object))?;
         let numbers: [f64; 3] = numbers
             .try_into()
             .map_err(|numbers: Vec<f64>| errors::setting(format!("give three numbers, not {}", numbers.len())))?;
@@ -35,11 +35,6 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Vector {
             Err(errors::setting(format!("{numbers:?} is not finite in single precision")))
         }
     }
-}
-
-/// The name of an object's type.
-fn kind(object: &Bound<'_, PyAny>) -> String {
-    object.get_type().name().map_or_else(|_| "another type".to_owned(), |name| name.to_string())
 }
 
 /// One number, or red, green and blue; linear. Codes of 8 bits, which only an array or a scalar of NumPy can be, are shares of 255.
@@ -261,30 +256,26 @@ pub(crate) fn transforms(what: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<D
     if numbers.iter().any(|number| !number.is_finite()) {
         return Err(errors::geometry(format!("{what} must be finite")));
     }
-    for (number, matrix) in (0..).zip(numbers.as_chunks::<16>().0) {
+    // Rows of NumPy's arrays are columns to glam.
+    let matrix = |rows: &[f64; 16]| DMat4::from_cols_array(rows).transpose();
+    let matrices: Vec<DMat4> = numbers.as_chunks().0.iter().map(matrix).collect();
+    for (number, matrix) in matrices.iter().enumerate() {
         let which = if array.ndim() == 2 { String::new() } else { format!("[{number}]") };
         check_affine(&format!("{what}{which}"), matrix)?;
     }
-    // Rows of NumPy's arrays are columns to glam.
-    Ok(numbers.as_chunks().0.iter().map(|rows| DMat4::from_cols_array(rows).transpose()).collect())
+    Ok(matrices)
 }
 
-/// Rows of affine maps end in 0, 0, 0, 1, but for rounding in their products and inverses.
-const ROUNDING: f64 = 1e-9;
-
 /// Fails if the last row is that of no affine map: what it says would be lost.
-fn check_affine(what: &str, matrix: &[f64; 16]) -> PyResult<()> {
-    let [.., a, b, c, d] = *matrix;
-    let largest = matrix.iter().fold(1.0_f64, |largest, number| largest.max(number.abs()));
-    let is_zero = |number: f64| number.abs() <= ROUNDING * largest;
-    if [a, b, c].into_iter().all(is_zero) && is_zero(d - 1.0) {
+fn check_affine(what: &str, matrix: &DMat4) -> PyResult<()> {
+    if is_affine(matrix) {
         return Ok(());
     }
-    let column = [matrix[3], matrix[7], matrix[11]];
-    let remedy = match column.into_iter().all(is_zero) && is_zero(d - 1.0) {
+    let remedy = match is_affine(&matrix.transpose()) {
         true => "it looks transposed: move the translation to the last column, as in matrix.T",
         false => "give an affine map for column vectors",
     };
+    let [a, b, c, d] = matrix.row(3).to_array();
     Err(errors::geometry(format!("the last row of {what} is {a}, {b}, {c}, {d} and not 0, 0, 0, 1: {remedy}")))
 }
 

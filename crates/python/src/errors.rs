@@ -63,14 +63,14 @@ pub(crate) fn wrong_type(needed: &str, object: &Bound<'_, PyAny>) -> PyErr {
 
 /// What Python itself says of an argument, as an exception of the package.
 pub(crate) fn of_argument(py: Python<'_>, error: PyErr) -> PyErr {
-    let message = || error.value(py).to_string();
-    match () {
-        () if error.is_instance_of::<class::LightmeshError>(py) => error,
-        () if error.is_instance_of::<PyTypeError>(py) => argument(message()),
-        () if error.is_instance_of::<PyValueError>(py) || error.is_instance_of::<PyOverflowError>(py) => {
-            setting(message())
-        }
-        () => error,
+    if error.is_instance_of::<class::LightmeshError>(py) {
+        error
+    } else if error.is_instance_of::<PyTypeError>(py) {
+        argument(error.value(py).to_string())
+    } else if error.is_instance_of::<PyValueError>(py) || error.is_instance_of::<PyOverflowError>(py) {
+        setting(error.value(py).to_string())
+    } else {
+        error
     }
 }
 

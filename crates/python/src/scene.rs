@@ -71,14 +71,8 @@ struct Ranges(Vec<[u32; 3]>);
 
 /// The object, the first triangle, and the end of each run of triangles.
 fn ranges(mesh: &scene::Mesh) -> Vec<[u32; 3]> {
-    let count = mesh.triangles.len() as u32;
-    let (starts, objects) = mesh.objects.runs();
-    if starts.is_empty() {
-        return if count == 0 { Vec::new() } else { vec![[0, 0, count]] };
-    }
-    let ends = starts[1..].iter().copied().chain([count]);
-    let rows = starts.iter().zip(ends).zip(objects).map(|((&start, end), &object)| [object, start.min(count), end]);
-    rows.filter(|[_, start, end]| start < end).collect()
+    let rows = mesh.objects.ranges(mesh.triangles.len() as u32);
+    rows.map(|(run, object)| [object, run.start, run.end]).collect()
 }
 
 /// A list that refuses changes, which would be lost.

@@ -29,7 +29,9 @@ mod staging;
 /// The vector and matrix types of this crate's API.
 pub use glam;
 
-pub use build::{CreaseAngle, GeometryError, LoadError, LoadOptions, MeshPart, Place, SceneBuilder, SceneFormat};
+pub use build::{
+    CreaseAngle, GeometryError, LoadError, LoadOptions, MeshPart, Place, SceneBuilder, SceneFormat, is_affine,
+};
 pub use export::{AnimationInfo, BoundsInfo, CameraInfo, ExportError, LightInfo, SceneInfo};
 pub use formats::EnvironmentError;
 #[doc(hidden)]

@@ -5,8 +5,9 @@ use std::path::Path;
 use lightmesh::Scene;
 use lightmesh::request::Host;
 use lightmesh::request::files::Destination;
+use lightmesh::scene::Instancing;
 
-use super::open::open_placed;
+use super::open::open_stored;
 use crate::args::ExportArgs;
 use crate::failure::Failure;
 use crate::memory;
@@ -41,7 +42,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
         output::check_writable(path)?;
     }
     let outputs = Outputs::new([("-o", Some(path)), ("the triangles of -o", mesh.as_deref())])?;
-    let scene = open_placed(&args.scene, args.smooth.0, &outputs, watcher)?;
+    let scene = open_stored(&args.scene, args.smooth.0, Instancing::Always, &outputs, watcher)?;
     memory::during(EXPORTING, || scene.export(path))?;
     Ok(scene)
 }
@@ -49,7 +50,7 @@ fn to_file(path: &Path, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, F
 /// As one GLB file, the only format that is one.
 fn to_stdout(destination: &Destination, args: &ExportArgs, watcher: &Watcher) -> Result<Scene, Failure> {
     destination.check_binary("-o")?;
-    let scene = open_placed(&args.scene, args.smooth.0, &Outputs::default(), watcher)?;
+    let scene = open_stored(&args.scene, args.smooth.0, Instancing::Always, &Outputs::default(), watcher)?;
     let file = memory::during(EXPORTING, || Ok::<_, Failure>(destination.ready(&scene.to_glb()?)?))?;
     output::publish(vec![file])?;
     Ok(scene)

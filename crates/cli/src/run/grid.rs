@@ -5,9 +5,10 @@ use std::time::Instant;
 use lightmesh::render::PreparedGeometry;
 use lightmesh::render::accel::{Grid, GridOptions, Levels};
 use lightmesh::request::BUILDING;
+use lightmesh::scene::Instancing;
 use lightmesh_memory::Budget;
 
-use super::open::open_copied;
+use super::open::open_stored;
 use crate::args::GridArgs;
 use crate::failure::Failure;
 use crate::memory;
@@ -19,7 +20,7 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Failure> {
     let outputs = Outputs::new([("-o", Some(&*args.output))])?;
     let watcher = Watcher::plain(args.quiet);
     // Normals are no part of the grid.
-    let scene = open_copied(&args.scene, None, &outputs, &watcher)?;
+    let scene = open_stored(&args.scene, None, Instancing::Never, &outputs, &watcher)?;
 
     let start = Instant::now();
     let levels = if args.levels == 1 { Levels::One } else { Levels::Two };

@@ -16,26 +16,16 @@ use crate::progress::Watcher;
 /// What messages call the scene that is read from standard input.
 const STANDARD_INPUT: &str = "standard input";
 
-/// Reads a scene of which each place of a mesh has a copy.
-pub(super) fn open_copied(
+/// Reads a scene for a command that has no request, of which meshes in several places are stored as it needs them.
+pub(super) fn open_stored(
     arg: &SceneArg,
     smooth: Option<CreaseAngle>,
+    instancing: Instancing,
     outputs: &Outputs,
     watcher: &Watcher,
 ) -> Result<Scene, Failure> {
     let request = arg.reading.request();
-    open((&arg.scene, request.scene_format), &load_options(&request, smooth, Instancing::Never), outputs, watcher)
-}
-
-/// Reads a scene of which meshes in several places are stored once.
-pub(super) fn open_placed(
-    arg: &SceneArg,
-    smooth: Option<CreaseAngle>,
-    outputs: &Outputs,
-    watcher: &Watcher,
-) -> Result<Scene, Failure> {
-    let request = arg.reading.request();
-    open((&arg.scene, request.scene_format), &load_options(&request, smooth, Instancing::Always), outputs, watcher)
+    open((&arg.scene, request.scene_format), &load_options(&request, smooth, instancing), outputs, watcher)
 }
 
 /// Reads the scene, of which outputs must not overwrite any file, and prints its warnings.

@@ -99,12 +99,12 @@ impl Error {
         }
     }
 
-    /// What happened to frame `number` of a film up to `last`, of which some are `finished`: `goes_on` goes on with them.
     /// Whether more free memory would have helped.
     pub(crate) fn is_of_memory(&self) -> bool {
         matches!(self, Error::Render(error) if error.is_of_memory())
     }
 
+    /// What happened to frame `number` of a film up to `last`, of which some are `finished`: `goes_on` goes on with them.
     pub(crate) fn in_frame(self, number: u32, last: u32, finished: usize, goes_on: Name) -> Error {
         match self {
             Error::Render(RenderError::Cancelled) => self,

@@ -34,8 +34,6 @@ pub struct SunSpec {
 
 /// An example of a whole day.
 const EXAMPLE: &str = "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m";
-/// The time by which a clock can differ from universal time.
-const MOST_OFFSET: i32 = 18 * 60;
 
 impl SunSpec {
     /// A minute of the day.
@@ -110,9 +108,10 @@ impl FromStr for SunSpec {
                 range: "a time of the same day after its beginning, up to 24:00; a night is two studies",
             });
         }
-        // Its place in the sky is not known in all years.
-        SunPosition::of(latitude, longitude, &spec.moment(0.0))
-            .map_err(|_| part("the date", &spec.date(), "a day of the years from 0001 to 2999", "2026-06-21"))?;
+        // The date exists, in a year in which its place in the sky is known.
+        SunPosition::of(latitude, longitude, &spec.moment(0.0)).map_err(|_| {
+            part("the date", &spec.date(), "a day of the years from 0001 to 2999 that exists", "2026-06-21")
+        })?;
         Ok(spec)
     }
 }
@@ -142,7 +141,7 @@ fn day_and_offset(text: &str) -> Result<([u32; 3], i32), ValueError> {
     let end = dashes.into_iter().chain(end).min().unwrap_or(text.len());
     let (day, offset) = text.split_at(end);
     let date = date(day).ok_or_else(|| part("the date", day, "a day that exists, as YYYY-MM-DD", "2026-06-21"))?;
-    let offset = offset_in_minutes(offset.trim()).ok_or_else(|| {
+    let offset = Moment::offset_of(offset.trim()).ok_or_else(|| {
         part(
             "the offset from universal time, right after the date,",
             offset,
@@ -153,31 +152,11 @@ fn day_and_offset(text: &str) -> Result<([u32; 3], i32), ValueError> {
     Ok((date, offset))
 }
 
-/// Year, month and day of `YYYY-MM-DD`, if there is such a day.
+/// Year, month and day of `YYYY-MM-DD`, whether there is such a day or not.
 fn date(text: &str) -> Option<[u32; 3]> {
     let mut parts = text.trim().split('-');
-    let [year, month, day] = [digits(parts.next()?, 4)?, digits(parts.next()?, 2)?, digits(parts.next()?, 2)?];
-    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-    let days = match month {
-        2 => 28 + u32::from(is_leap),
-        4 | 6 | 9 | 11 => 30,
-        _ => 31,
-    };
-    let exists = parts.next().is_none() && (1..=12).contains(&month) && (1..=days).contains(&day);
-    exists.then_some([year, month, day])
-}
-
-/// The minutes of `Z` or `±HH:MM`.
-fn offset_in_minutes(text: &str) -> Option<i32> {
-    if text.eq_ignore_ascii_case("z") {
-        return Some(0);
-    }
-    let sign = if text.starts_with('-') { -1 } else { 1 };
-    let (hours, minutes) = text.strip_prefix(['+', '-'])?.split_once(':')?;
-    let number = |text: &str| digits(text, 2).or_else(|| digits(text, 1));
-    let [hours, minutes] = [number(hours)?, number(minutes).filter(|&minutes| minutes < 60)?];
-    let offset = (60 * hours + minutes) as i32;
-    (offset <= MOST_OFFSET).then_some(sign * offset)
+    let date = [digits(parts.next()?, 4)?, digits(parts.next()?, 2)?, digits(parts.next()?, 2)?];
+    parts.next().is_none().then_some(date)
 }
 
 /// A number of so many digits.

@@ -104,11 +104,11 @@ impl SceneBuilder {
 
     /// The objects of some triangles, each with a run of them; none if nothing was named.
     pub(crate) fn objects_of(&self, triangles: &Range<usize>) -> Vec<(Range<usize>, String)> {
-        let (starts, objects) = self.objects.runs();
-        let ends = starts.iter().skip(1).map(|&start| start as usize).chain([usize::MAX]);
-        let runs = starts.iter().zip(ends).zip(objects).map(|((&start, end), &object)| {
-            let run = triangles.start.max(start as usize)..triangles.end.min(end);
-            (run, self.objects.name(object).to_owned())
+        if self.objects.runs().0.is_empty() {
+            return Vec::new();
+        }
+        let runs = self.objects.ranges(triangles.end as u32).map(|(run, object)| {
+            (triangles.start.max(run.start as usize)..run.end as usize, self.objects.name(object).to_owned())
         });
         runs.filter(|(run, _)| !run.is_empty()).collect()
     }

@@ -99,7 +99,7 @@ pub enum GeometryError {
 const ROUNDING: f64 = 1e-9;
 
 /// Whether nothing is lost if the last row of a map is taken for 0, 0, 0, 1.
-pub(crate) fn is_affine(map: &DMat4) -> bool {
+pub fn is_affine(map: &DMat4) -> bool {
     let largest = map.to_cols_array().iter().fold(1.0_f64, |largest, number| largest.max(number.abs()));
     (map.row(3) - DVec4::W).abs().max_element() <= ROUNDING * largest
 }

@@ -23,7 +23,7 @@ pub(crate) mod warnings;
 
 pub use builder::SceneBuilder;
 pub use error::{LoadError, Place};
-pub use geometry_check::GeometryError;
+pub use geometry_check::{GeometryError, is_affine};
 pub use load_options::LoadOptions;
 pub use mesh_part::MeshPart;
 pub use scene_format::SceneFormat;

@@ -89,6 +89,15 @@ impl Objects {
         (&self.starts, &self.objects)
     }
 
+    /// The triangles below `end` in runs, each with its object; one run if nothing was named.
+    pub fn ranges(&self, end: u32) -> impl Iterator<Item = (Range<u32>, u32)> {
+        let next = self.starts.iter().skip(1).copied().chain([u32::MAX]);
+        let runs = self.starts.iter().zip(next).zip(&self.objects);
+        let named = runs.map(move |((&start, next), &object)| (start..next.min(end), object));
+        let unnamed = self.starts.is_empty().then_some((0..end, 0));
+        named.chain(unnamed).filter(|(run, _)| !run.is_empty())
+    }
+
     /// Continues with the objects of another mesh, whose triangles are added from number `first` on: `place` says where each of its triangles
     /// is among those that are added.
     pub(crate) fn append(&mut self, first: usize, other: &Objects, place: impl Fn(u32) -> usize) {

@@ -52,7 +52,9 @@ pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context
         renderer.install(|| study.outputs.iter().map(|output| found.file(output)).collect::<Result<_, _>>())
     })?;
     publish(files)?;
-    if let Some(text) = found.unseen(host.words()).filter(|_| study.outputs.iter().any(HoursFile::is_table)) {
+    if study.outputs.iter().any(HoursFile::is_table)
+        && let Some(text) = found.unseen(host.words())
+    {
         host.warning(&text);
     }
     let names: Vec<String> = study.outputs.iter().map(|output| output.path.display().to_string()).collect();

@@ -7,7 +7,7 @@
 //! Hours have as many decimals as the step of the study allows. Spreadsheets would run names that begin like formulas: they get an apostrophe
 //! in front, which shows them as text.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use glam::Vec3;
@@ -55,8 +55,12 @@ fn rows(found: &SunHours) -> BTreeMap<u32, Row> {
 
 /// How many objects no pixel sees, and how many there are.
 pub(super) fn unseen(found: &SunHours) -> (usize, usize) {
-    let (all, seen) = (found.layers().object.names.len(), rows(found).into_keys().filter(|&number| number > 0).count());
-    (all - seen, all)
+    let object = &found.layers().object;
+    let mut unseen: BTreeSet<u32> = (1..=object.names.len() as u32).collect();
+    for number in object.nearest.iter().enumerate().filter_map(|(pixel, number)| found.sees(pixel).then_some(number)) {
+        unseen.remove(number);
+    }
+    (unseen.len(), object.names.len())
 }
 
 /// Text with a row for each object, in the order of the scene.

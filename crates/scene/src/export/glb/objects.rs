@@ -46,16 +46,7 @@ impl Objects {
         let mesh = &scene.geometry.mesh;
         let mut order: HashMap<u32, usize> = HashMap::new();
         let mut own: Vec<(u32, Vec<u32>)> = Vec::new();
-        let end = mesh.own_triangles().end as u32;
-        let (starts, objects) = mesh.objects.runs();
-        let ends = starts.iter().skip(1).copied().chain([end]);
-        let named = starts.iter().zip(ends).zip(objects).map(|((&start, end), &object)| (start..end, object));
-        let unnamed = starts.is_empty().then_some((0..end, 0));
-        for (triangles, object) in named.chain(unnamed) {
-            let triangles = triangles.start..triangles.end.min(end);
-            if triangles.is_empty() {
-                continue;
-            }
+        for (triangles, object) in mesh.objects.ranges(mesh.own_triangles().end as u32) {
             let place = *order.entry(object).or_insert_with(|| {
                 own.push((object, Vec::new()));
                 own.len() - 1

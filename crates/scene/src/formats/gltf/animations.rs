@@ -68,8 +68,8 @@ pub(super) fn read(accessors: &Accessors, wanted: Option<&str>, left_out: &mut L
     for (index, animation) in accessors.document.animations.iter().enumerate() {
         let name = animation.name.as_deref().filter(|name| !name.is_empty());
         let name = name.map_or_else(|| format!("animation {index}"), str::to_owned);
-        let mut targets: Vec<(u32, Path)> = animation.channels.iter().filter_map(target).collect();
-        let unknown = animation.channels.len() - targets.len();
+        let exists = |&(node, _): &(u32, Path)| (node as usize) < accessors.document.nodes.len();
+        let (targets, lost): (Vec<_>, Vec<_>) = animation.channels.iter().filter_map(target).partition(exists);
         let is_played = match wanted {
             Some(wanted) => name == wanted && played.names.is_empty(),
             None => !targets.iter().any(|target| taken.contains(target)),
@@ -78,12 +78,8 @@ pub(super) fn read(accessors: &Accessors, wanted: Option<&str>, left_out: &mut L
             played.others.push(name);
             continue;
         }
-        left_out.unknown_channels += unknown;
-        let nodes = accessors.document.nodes.len();
-        targets.iter().filter(|&&(node, _)| node as usize >= nodes).for_each(|&(node, _)| {
-            left_out.lost_channels.add(node as usize, None);
-        });
-        targets.retain(|&(node, _)| (node as usize) < nodes);
+        left_out.unknown_channels += animation.channels.len() - targets.len() - lost.len();
+        lost.iter().for_each(|&(node, _)| left_out.lost_channels.add(node as usize, None));
         taken.extend(targets);
         played.names.push(name);
         Reader { accessors, animation, index, known: BTreeMap::new() }.read(&mut played, left_out)?;

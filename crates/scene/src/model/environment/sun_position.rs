@@ -98,6 +98,21 @@ impl SunPosition {
     }
 }
 
+impl Moment {
+    /// The minutes by which a clock is ahead of universal time: of `Z` or `±HH:MM`, up to 18 hours.
+    pub fn offset_of(text: &str) -> Option<i32> {
+        if matches!(text, "Z" | "z") {
+            return Some(0);
+        }
+        let clock = text.strip_prefix(['+', '-'])?;
+        let [hours, minutes] = numbers::<2>(clock, ':')?;
+        let is_short = clock.split(':').all(|part| part.len() <= 2);
+        let offset = (60 * hours + minutes) as i32;
+        let is_offset = is_short && minutes < 60 && offset <= 18 * 60;
+        is_offset.then_some(if text.starts_with('-') { -offset } else { offset })
+    }
+}
+
 impl FromStr for Moment {
     type Err = SunError;
 
@@ -117,18 +132,7 @@ fn moment(text: &str) -> Option<Moment> {
         "" => 0.0,
         seconds => seconds.strip_prefix(':')?.parse::<f64>().ok().filter(|second| (0.0..60.0).contains(second))?,
     };
-    let offset = match zone.split_at(1) {
-        ("Z" | "z", "") => 0,
-        (sign @ ("+" | "-"), zone) => {
-            let [hours, minutes] = numbers::<2>(zone, ':')?;
-            let offset = (60 * hours + minutes) as i32;
-            if minutes >= 60 || offset > 18 * 60 {
-                return None;
-            }
-            if sign == "-" { -offset } else { offset }
-        }
-        _ => return None,
-    };
+    let offset = Moment::offset_of(zone)?;
     (hour < 24 && minute < 60).then_some(Moment { date, time: [hour, minute], second, offset })
 }
 
