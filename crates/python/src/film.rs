@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use lightmesh::request::files::Files;
 use lightmesh::request::sun::{HoursFormat, SunHours as Hours};
@@ -23,7 +22,7 @@ use crate::process::{self, PerProcess};
 use crate::scene::Scene;
 use crate::settings;
 use crate::target::{self, Target};
-use crate::watch::{self, Part, Watch, Wishes};
+use crate::watch::{self, Watch, Wishes};
 
 /// What a film is of: a scene, or the file of one.
 pub(crate) enum Source {
@@ -99,26 +98,9 @@ impl Production {
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Film {
     engine: PerProcess<Arc<Renderer>>,
-    reel: PerProcess<Mutex<Reel>>,
+    /// What is left to do.
+    frames: PerProcess<Mutex<Frames>>,
     wishes: Wishes,
-}
-
-/// What of a film is left to do.
-struct Reel {
-    frames: Frames,
-    /// How many were left when it began.
-    total: usize,
-    /// The seconds that its frames took so far.
-    spent: f64,
-}
-
-impl Reel {
-    /// The next frame as a part of the film.
-    fn part(&self) -> Part {
-        let (total, left) = (self.total.max(1) as f64, self.frames.left());
-        let done = self.total - left;
-        Part { before: done as f64 / total, after: (done + 1).min(self.total) as f64 / total, spent: self.spent }
-    }
 }
 
 impl Film {
@@ -135,16 +117,15 @@ impl Film {
             production.session(engine, watch)?.frames(engine, watch)
         };
         // No frame is done by that.
-        let beginning = Wishes { progress: None, ..wishes.of_part(py, Part::default()) };
+        let beginning = Wishes { progress: None, ..wishes.of_part(py) };
         let frames = watch::run(py, beginning, begin)?.or_raise()?;
-        let reel = Reel { total: frames.left(), frames, spent: 0.0 };
-        let (engine, reel) = (PerProcess::new(Arc::clone(engine)), PerProcess::new(Mutex::new(reel)));
-        Ok(Film { engine, reel, wishes })
+        let (engine, frames) = (PerProcess::new(Arc::clone(engine)), PerProcess::new(Mutex::new(frames)));
+        Ok(Film { engine, frames, wishes })
     }
 
     /// The renderer, and what is left to do.
-    fn of_this_process(&self) -> PyResult<(&Renderer, &Mutex<Reel>)> {
-        let both = self.engine.own().zip(self.reel.own());
+    fn of_this_process(&self) -> PyResult<(&Renderer, &Mutex<Frames>)> {
+        let both = self.engine.own().zip(self.frames.own());
         let (engine, reel) = both.ok_or_else(|| {
             errors::other("the film was begun by another process, from which this one was forked: begin it in this one")
         })?;
@@ -152,8 +133,8 @@ impl Film {
     }
 }
 
-fn lock(reel: &Mutex<Reel>) -> MutexGuard<'_, Reel> {
-    reel.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock(frames: &Mutex<Frames>) -> MutexGuard<'_, Frames> {
+    frames.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[pymethods]
@@ -163,28 +144,20 @@ impl Film {
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Frame>> {
-        let (engine, reel) = self.of_this_process()?;
-        let part = py.detach(|| lock(reel).part());
-        let mut wishes = self.wishes.of_part(py, part);
-        if part.before == part.after {
-            // There is no frame left to tell of.
-            wishes.progress = None;
-        }
+        let (engine, frames) = self.of_this_process()?;
         let next = |watch: &Watch| {
-            let mut reel = lock(reel);
-            let start = Instant::now();
-            let rendered = reel.frames.next(engine, watch).transpose()?;
-            reel.spent += start.elapsed().as_secs_f64();
-            let request = &reel.frames.plan().order.request;
+            let mut frames = lock(frames);
+            let rendered = frames.next(engine, watch).transpose()?;
+            let request = &frames.plan().order.request;
             Ok::<_, Error>(rendered.map(|rendered| Frame::of_film(rendered, request, watch.notes())))
         };
-        watch::run(py, wishes, next)?.or_raise()
+        watch::run(py, self.wishes.of_part(py), next)?.or_raise()
     }
 
     /// How many frames are left.
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        let (_, reel) = self.of_this_process()?;
-        Ok(py.detach(|| lock(reel).frames.left()))
+        let (_, frames) = self.of_this_process()?;
+        Ok(py.detach(|| lock(frames).left()))
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {

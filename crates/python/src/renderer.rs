@@ -155,15 +155,13 @@ impl Renderer {
         let render = |watch: &Watch| {
             let (kept, staged) = order.prepare(&machine.engine, &machine.last, None, watch)?;
             let mut cache = cache.map(MeshCache::lock);
-            let (frame, stops) = staged.picture(
-                &kept.prepared,
-                order.plan.settings(),
-                watch,
-                |prepared, settings| match &mut cache {
-                    Some(cache) => machine.engine.render_with(cache, prepared, settings, watch),
-                    None => machine.engine.render_prepared(prepared, settings, watch),
-                },
-            )?;
+            let (frame, stops) =
+                staged.picture(&kept.prepared, order.plan.settings(), watch, |prepared, settings, host| {
+                    match &mut cache {
+                        Some(cache) => machine.engine.render_with(cache, prepared, settings, host),
+                        None => machine.engine.render_prepared(prepared, settings, host),
+                    }
+                })?;
             let refused = cache.and_then(|mut cache| cache.refused());
             Ok((Frame::new(frame, stops, watch.notes(), &kept.prepared.scene), refused))
         };

@@ -79,47 +79,20 @@ impl Cancel {
 pub(crate) struct Wishes {
     pub(crate) progress: Option<Py<PyAny>>,
     pub(crate) cancel: Option<Cancel>,
-    pub(crate) part: Part,
-}
-
-/// Of which part of the whole a caller waits for the end, such as a frame of a film.
-#[derive(Clone, Copy)]
-pub(crate) struct Part {
-    /// The share of the whole that is done before it, and after it.
-    pub(crate) before: f64,
-    pub(crate) after: f64,
-    /// The seconds that all before it took.
-    pub(crate) spent: f64,
-}
-
-impl Default for Part {
-    /// The whole.
-    fn default() -> Part {
-        Part { before: 0.0, after: 1.0, spent: 0.0 }
-    }
-}
-
-impl Part {
-    /// Progress of the part as progress of the whole.
-    fn of_whole(self, progress: lightmesh::render::Progress, stage: String) -> Progress {
-        let Part { before, after, spent } = self;
-        let (done, seconds) = (before + (after - before) * progress.done, spent + progress.seconds);
-        let is_whole = before == 0.0 && after == 1.0;
-        let in_proportion = || (done > 0.0).then(|| seconds * (1.0 - done) / done);
-        Progress { done, seconds, left: if is_whole { progress.left } else { in_proportion() }, stage }
-    }
+    /// Whether progress is that of other work, too.
+    pub(crate) is_part: bool,
 }
 
 impl Wishes {
     pub(crate) fn new(progress: Option<Given<Py<PyAny>>>, cancel: Option<Given<Cancel>>) -> Wishes {
         let (progress, cancel) = (progress.map(|Given(progress)| progress), cancel.map(|Given(cancel)| cancel));
-        Wishes { progress, cancel, part: Part::default() }
+        Wishes { progress, cancel, is_part: false }
     }
 
-    /// The same for a part of the whole.
-    pub(crate) fn of_part(&self, py: Python<'_>, part: Part) -> Wishes {
+    /// The same for a part of the work that progress is told of.
+    pub(crate) fn of_part(&self, py: Python<'_>) -> Wishes {
         let progress = self.progress.as_ref().map(|callback| callback.clone_ref(py));
-        Wishes { progress, cancel: self.cancel.clone(), part }
+        Wishes { progress, cancel: self.cancel.clone(), is_part: true }
     }
 }
 
@@ -129,7 +102,6 @@ pub(crate) struct Watch {
     changed: Condvar,
     stop: AtomicBool,
     cancel: Option<Cancel>,
-    part: Part,
 }
 
 #[derive(Default)]
@@ -141,9 +113,16 @@ struct State {
     notes: Vec<String>,
 }
 
+impl State {
+    fn told(&self) -> Progress {
+        let lightmesh::render::Progress { done, seconds, left } = self.progress;
+        Progress { done, seconds, left, stage: self.stage.map_or(String::new(), |stage| stage.name().to_owned()) }
+    }
+}
+
 impl Watch {
-    fn new(cancel: Option<Cancel>, part: Part) -> Watch {
-        Watch { state: Mutex::default(), changed: Condvar::new(), stop: AtomicBool::new(false), cancel, part }
+    fn new(cancel: Option<Cancel>) -> Watch {
+        Watch { state: Mutex::default(), changed: Condvar::new(), stop: AtomicBool::new(false), cancel }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -163,12 +142,7 @@ impl Watch {
             .wait_timeout_while(state, TICK, |state| !state.is_over)
             .unwrap_or_else(PoisonError::into_inner);
         let is_new = std::mem::take(&mut state.is_new);
-        (state.is_over, is_new.then(|| self.told(&state)))
-    }
-
-    fn told(&self, state: &State) -> Progress {
-        let stage = state.stage.map_or(String::new(), |stage| stage.name().to_owned());
-        self.part.of_whole(state.progress, stage)
+        (state.is_over, is_new.then(|| state.told()))
     }
 
     /// All of it is done; what is told of that, unless it was told before.
@@ -176,7 +150,7 @@ impl Watch {
         let mut state = self.state();
         let was_told = state.progress.done >= 1.0 && !state.is_new;
         (state.progress.done, state.progress.left) = (1.0, Some(0.0));
-        (!was_told).then(|| self.told(&state))
+        (!was_told).then(|| state.told())
     }
 
     fn finish(&self) {
@@ -192,9 +166,7 @@ impl Observer for Watch {
 
     fn progress(&self, progress: lightmesh::render::Progress) {
         let mut state = self.state();
-        // Mirrors make more work while they are traced, and some of it is repeated where memory is short: a share that was told stays.
-        let done = progress.done.max(state.progress.done).min(1.0);
-        (state.progress, state.is_new) = (lightmesh::render::Progress { done, ..progress }, true);
+        (state.progress, state.is_new) = (progress, true);
     }
 
     fn note(&self, text: &str) {
@@ -226,8 +198,8 @@ pub(crate) fn run<T: Send, E: Send>(
     wishes: Wishes,
     work: impl FnOnce(&Watch) -> Result<T, E> + Send,
 ) -> PyResult<Result<T, E>> {
-    let Wishes { progress, cancel, part } = wishes;
-    let watch = Watch::new(cancel, part);
+    let Wishes { progress, cancel, is_part } = wishes;
+    let watch = Watch::new(cancel);
     let attend = |py: Python<'_>, news: Option<Progress>| -> PyResult<()> {
         py.check_signals()?;
         if let (Some(callback), Some(news)) = (&progress, news) {
@@ -260,7 +232,7 @@ pub(crate) fn run<T: Send, E: Send>(
     }
     let result = result?;
     // A render that was stopped may have given what was finished.
-    let is_complete = result.is_ok() && !watch.cancelled() && progress.is_some();
+    let is_complete = result.is_ok() && !watch.cancelled() && progress.is_some() && !is_part;
     if let Some(news) = is_complete.then(|| watch.complete()).flatten() {
         attend(py, Some(news))?;
     }

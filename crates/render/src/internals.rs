@@ -140,7 +140,7 @@ pub mod probes {
 }
 
 pub mod progress {
-    pub use crate::progress::Work;
+    pub use crate::progress::{Pieces, Work};
 }
 
 pub mod shading {

@@ -3,16 +3,24 @@
 use crate::settings::Setting;
 use crate::stage::Stage;
 
-/// How far the render of an image has progressed, over all of its stages.
+/// How far a render has progressed, over all of its stages.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// The part of the work that is done, 0 to 1. Mirrors may reduce it a little: how many rays they add is known only once they are
-    /// traced.
+    /// The part of the work that is done, 0 to 1; it never falls.
     pub done: f64,
     /// Seconds since the render was started.
     pub seconds: f64,
-    /// Estimated seconds remaining, if the rest takes as long in proportion; unknown at the very beginning.
+    /// Estimated seconds remaining; unknown at the very beginning.
     pub left: Option<f64>,
+}
+
+impl Progress {
+    /// The same as progress of a whole that was started `seconds` before, of which this is the part between two shares.
+    pub fn of_whole(self, [before, after]: [f64; 2], seconds: f64) -> Progress {
+        // The other parts take as long in proportion.
+        let left = self.left.map(|left| ((seconds + left) / after.max(f64::MIN_POSITIVE) - seconds).max(left));
+        Progress { done: before * (1.0 - self.done) + after * self.done, seconds, left }
+    }
 }
 
 /// An observer of a render. Called from many threads.
@@ -27,7 +35,7 @@ pub trait Observer: Sync {
         let _ = pieces;
     }
 
-    /// The progress of the whole image. Called now and then, after pieces of work.
+    /// The progress of the whole render. Called now and then, after pieces of work, and at the end.
     fn progress(&self, progress: Progress) {
         let _ = progress;
     }

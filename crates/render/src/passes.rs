@@ -16,6 +16,7 @@ use crate::error::RenderError;
 use crate::plan::Plan;
 use crate::prepared::TransmissionParts;
 use crate::probes::GivenPoints;
+use crate::progress::Pieces;
 use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stages::irradiance_cache::Gathering;
@@ -27,6 +28,12 @@ use crate::view::View;
 const PARTS_OF_FRAGMENT: u32 = 4;
 /// A merged mirror ray takes this part. One or two of them make most of what is in a mirror.
 const PARTS_OF_MERGED: u32 = 2;
+/// Shared fragments by pixel, before they are counted.
+const GUESSED_FRAGMENTS: f64 = 0.5;
+/// Which share of the samples of pixels turns out to differ so much between pixels that they are shaded one by one, more or less.
+const GUESSED_SPLIT: f64 = 0.05;
+/// How many of the rays that meet a surface a mirror sends on, before they are counted.
+const GUESSED_MIRRORED: f64 = 0.25;
 
 /// Visibility at given points, to be computed.
 pub(crate) struct Baking<'a, B: Backend> {
@@ -40,8 +47,7 @@ impl<B: Backend> Baking<'_, B> {
     /// Finds what each probe sees of each light. Also returns how many rows of probes were processed at once.
     pub(crate) fn bake(&self, points: &GivenPoints) -> Result<(Visibility, u32), RenderError> {
         let Baking { runner, scene, technique, plan } = self;
-        let stages = technique.stages().len() as u64 + u64::from(plan.is_transmissive);
-        runner.context.work.expect(points.len() as u64 * stages);
+        runner.context.work.expect(pieces_of_visibility(technique, plan, points.len() as f64));
         let at_once = runner.or_evict(|backend| backend.rows_at_once(scene, plan))?;
         let mut all = Visibility::dark(0..plan.lights.lights, points.len());
         let at_once = in_bands(runner, points.rows(), at_once, |rows| {
@@ -113,10 +119,12 @@ struct Depths {
     last: bool,
     /// Whether rays of a pixel that meet one surface are merged.
     merge: bool,
+    /// Whether nothing was gathered before for the pixels of the first ones.
+    new: bool,
 }
 
 impl Depths {
-    const ALL: Depths = Depths { first: 0, last: false, merge: false };
+    const ALL: Depths = Depths { first: 0, last: false, merge: false, new: false };
     /// What is in mirrors is rendered otherwise.
     const FIRST: Depths = Depths { last: true, ..Depths::ALL };
     /// What mirrors show of the samples of pixels.
@@ -138,22 +146,12 @@ impl<B: Backend> Passes<'_, B> {
     /// Renders the whole view into `picture`, which also counts its finished rows. Returns how many rows were rendered
     /// at once.
     pub(crate) fn render(&self, picture: &mut Picture) -> Result<u32, RenderError> {
-        if self.plan.antialiasing.is_none() {
-            // With several samples it depends on what they see, and on the bands.
-            let camera_rays = self.plan.pixels();
-            self.runner.context.work.expect(camera_rays + self.pieces_of_wave(0, camera_rays));
-        }
         let at_once = self.runner.or_evict(|backend| backend.rows_at_once(self.scene, self.plan))?;
         let at_once = at_once.min(self.plan.most_rows.unwrap_or(u32::MAX));
         let height = self.view.size()[1];
         in_bands(&self.runner, height, at_once, |rows| {
             let finished = rows.end;
-            if self.plan.antialiasing.is_some() {
-                self.runner
-                    .context
-                    .work
-                    .begin_part([rows.start, rows.end].map(|row| f64::from(row) / f64::from(height)));
-            }
+            self.runner.context.work.begin_part([rows.start, rows.end].map(|row| f64::from(row) / f64::from(height)));
             self.band(rows, picture)?;
             picture.finished = finished;
             Ok(())
@@ -165,44 +163,50 @@ impl<B: Backend> Passes<'_, B> {
         let Passes { runner, scene, view, plan, .. } = self;
         let margin = plan.antialiasing.as_ref().map_or(0, Antialiasing::margin);
         let all = rows.start.saturating_sub(margin)..view.size()[1].min(rows.end.saturating_add(margin));
-        let mut film = runner.on_host(Stage::Film, |backend| backend.film(plan, [all.clone(), rows]))?;
         let pixels = view.size()[0] as usize * all.len();
-        if plan.antialiasing.is_some() {
-            // Camera rays, and what they see.
-            runner.context.work.expect(2 * pixels as u64);
-        }
+        let work = &runner.context.work;
+        work.expect(Pieces::of(Stage::CameraRays, pixels as f64));
+        let guess = match &plan.antialiasing {
+            None => self.pieces_of_wave(pixels as f64, true, self.goes_on(Depths::ALL, 0)),
+            Some(all) => self.guess_samples(pixels as f64, all, 0),
+        };
+        let guess = guess.and(Stage::PrimaryRays, pixels as f64);
+        work.expect(guess);
+        let mut film = runner.on_host(Stage::Film, |backend| backend.film(plan, [all.clone(), rows]))?;
         let rays =
             runner.stage(Stage::CameraRays, [pixels; 2], |backend| backend.camera_rays(view, all, plan.bounces))?;
         match &plan.antialiasing {
-            None => self.waves(rays, None, Depths::ALL, 1, &mut film)?,
-            Some(samples) => self.samples(rays, samples, &mut film)?,
+            None => {
+                let depths = Depths { new: true, ..Depths::ALL };
+                self.waves((rays, None), depths, 1, guess, &mut film)?;
+            }
+            Some(samples) => self.samples(rays, samples, guess, &mut film)?,
         }
         runner.backend.finish(runner.context)?;
         runner.on_host(Stage::Download, |backend| backend.develop(scene, film, picture))
     }
 
-    /// Renders a wave of rays, and those that surfaces let through or mirror. `known` is what they see, if that is known. Each ray takes one of
-    /// `parts` parts of the samples of lights.
+    /// Renders a wave of rays, and those that surfaces let through or mirror. What they see is given if it is known. Each ray takes one of `parts`
+    /// parts of the samples of lights. `guess` is the work that is expected of them.
     fn waves(
         &self,
-        mut rays: B::Rays,
-        mut known: Option<B::Hits>,
+        (mut rays, mut known): (B::Rays, Option<B::Hits>),
         depths: Depths,
         parts: u32,
+        mut guess: Pieces,
         film: &mut B::Film,
     ) -> Result<(), RenderError> {
-        let Passes { runner, scene, plan, .. } = self;
+        let Passes { runner, scene, .. } = self;
+        let work = &runner.context.work;
         for depth in depths.first.. {
             let mut n = runner.backend.ray_count(&rays);
             if n == 0 {
                 break;
             }
-            if depths.merge {
-                // The rest once they are merged.
-                runner.context.work.expect(n as u64);
-            } else if depth > 0 {
-                runner.context.work.expect(self.pieces_of_wave(depth, n as u64));
-            }
+            let (new, goes_on) = (depths.new && depth == 0, self.goes_on(depths, depth));
+            let primary = if known.is_some() { 0 } else { n };
+            let own = |n: usize| self.pieces_of_wave(n as f64, new, goes_on).and(Stage::PrimaryRays, primary as f64);
+            work.replace(&mut guess, own(n));
             let mut hits = match known.take() {
                 Some(hits) => hits,
                 None => runner
@@ -212,16 +216,23 @@ impl<B: Backend> Passes<'_, B> {
                 let wave = self.wave(&rays, &hits, parts);
                 (rays, hits) = runner.stage(Stage::MergedRays, [0; 2], |backend| backend.merged_rays(&wave))?;
                 n = runner.backend.ray_count(&rays);
-                runner.context.work.expect(self.pieces_of_wave(depth, n as u64) - n as u64);
+                work.replace(&mut guess, own(n));
             }
             let wave = self.wave(&rays, &hits, parts);
-            self.light(&wave, film)?;
-            if depths.last || depth >= plan.bounces && !plan.is_transmissive {
-                break;
+            self.light(&wave, film, new)?;
+            if !goes_on {
+                return Ok(());
             }
             rays = runner.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
+            guess = self.guess_after(n as f64);
         }
+        work.replace(&mut guess, Pieces::default());
         Ok(())
+    }
+
+    /// Whether surfaces that rays of this depth meet let any through, or mirror them.
+    fn goes_on(&self, depths: Depths, depth: u32) -> bool {
+        !depths.last && (depth < self.plan.bounces || self.plan.is_transmissive)
     }
 
     /// Rays with what they see, each of which takes one of `parts` parts of the samples of lights.
@@ -229,14 +240,16 @@ impl<B: Backend> Passes<'_, B> {
         WaveOf::<B> { context: self.runner.context, scene: self.scene, rays, hits, lights: LightGroup::ALL, parts }
     }
 
-    /// Adds the light that a wave's surface points reflect.
-    fn light(&self, wave: &WaveOf<B>, film: &mut B::Film) -> Result<(), RenderError> {
+    /// Adds the light that a wave's surface points reflect; it is `new` if nothing was gathered before for its pixels.
+    fn light(&self, wave: &WaveOf<B>, film: &mut B::Film, new: bool) -> Result<(), RenderError> {
         let Passes { runner, technique, plan, .. } = self;
         let n = runner.backend.ray_count(wave.rays);
         let gi_occluders = self.transmission_parts.as_ref().map_or(wave.scene, |parts| &parts.gi_occluders);
         let gather = |how: &Gathering| {
             let wave = WaveOf::<B> { scene: gi_occluders, ..*wave };
-            runner.stage(Stage::Gather, [n; 2], |backend| runner.with_gathered(|kept| backend.gather(&wave, how, kept)))
+            runner.counted_stage(Stage::Gather, (how.pieces(n as f64, new), n), |backend| {
+                runner.with_gathered(|kept| backend.gather(&wave, how, kept))
+            })
         };
         let gathered = plan.gathering.as_ref().map(gather).transpose()?;
         let light = Light { runner, technique, plan };
@@ -245,22 +258,31 @@ impl<B: Backend> Passes<'_, B> {
         })
     }
 
-    /// Renders pixels with several samples; `rays` go through their centres.
-    fn samples(&self, mut rays: B::Rays, all: &Antialiasing, film: &mut B::Film) -> Result<(), RenderError> {
+    /// Renders pixels with several samples; `rays` go through their centres. `guess` is the work that is expected of them.
+    fn samples(
+        &self,
+        mut rays: B::Rays,
+        all: &Antialiasing,
+        mut guess: Pieces,
+        film: &mut B::Film,
+    ) -> Result<(), RenderError> {
         let Passes { runner, scene, .. } = self;
+        let work = &runner.context.work;
         let n = runner.backend.ray_count(&rays);
         let mut hits =
             runner.stage(Stage::PrimaryRays, [n; 2], |backend| backend.primary_rays(runner.context, scene, &rays))?;
+        guess -= Pieces::of(Stage::PrimaryRays, n as f64);
         let mut done = 0;
         while done < all.samples {
             let numbers = done..all.samples.min(done + all.at_once());
+            let new = done == 0;
             done = numbers.end;
 
             // What the samples see; the pixels whose samples lie on one surface are shaded once.
             let range = SampleRange { all, numbers };
             let pieces = n * range.numbers.len();
-            let light = if all.apart { 0 } else { self.pieces_of_light(n as u64) };
-            runner.context.work.expect((pieces + n) as u64 + light);
+            let (later, mut rest) = (self.guess_samples(n as f64, all, done), guess);
+            rest -= self.pieces_of_samples(n as f64, pieces as f64, all, new);
             let centers = self.wave(&rays, &hits, 1);
             let sampled = runner
                 .stage(Stage::PixelSamples, [pieces; 2], |backend| backend.pixel_samples(&centers, film, &range))?;
@@ -268,58 +290,132 @@ impl<B: Backend> Passes<'_, B> {
             (samples, rays, hits) = sampled;
             let wave = self.wave(&rays, &hits, 1);
             if !all.apart {
-                self.light(&wave, film)?;
+                if let Some(counts) = self.fragment_counts(&wave, &samples, film, all)? {
+                    let [shared, single, mirror] = counts.map(|count| count as f64);
+                    let split = GUESSED_SPLIT * pieces as f64;
+                    let fragments = self.guess_fragments([shared, single + split, mirror], false);
+                    work.replace(&mut rest, fragments.into_iter().chain([later]).sum());
+                }
+                self.light(&wave, film, new)?;
             }
 
             // The others, by surface or sample by sample.
             let [shared, single, mirror] =
                 runner.stage(Stage::Fragments, [n; 2], |backend| backend.fragments(&wave, &mut samples, film, all))?;
-            for ((list, hits), depths, parts) in
-                [(shared, Depths::FIRST, PARTS_OF_FRAGMENT), (single, Depths::ALL, all.samples)]
-            {
-                let fragments = runner.backend.ray_count(&list) as u64;
-                let mirrors = if depths.last { 0 } else { self.pieces_of_mirrors(0, fragments) };
-                runner.context.work.expect(self.pieces_of_light(fragments) + mirrors);
-                self.waves(list, Some(hits), depths, parts, film)?;
-            }
-            self.mirrors(mirror, film)?;
+            let counts = [&shared, &single, &mirror].map(|(list, _)| runner.backend.ray_count(list) as f64);
+            let of_single = Depths { new: new && all.apart, ..Depths::ALL };
+            let guesses = self.guess_fragments(counts, of_single.new);
+            work.replace(&mut rest, guesses.into_iter().chain([later]).sum());
+            let known = |(list, hits)| (list, Some(hits));
+            self.waves(known(shared), Depths::FIRST, PARTS_OF_FRAGMENT, guesses[0], film)?;
+            self.waves(known(single), of_single, all.samples, guesses[1], film)?;
+            self.mirrors(mirror, guesses[2], film)?;
+            guess = later;
         }
         Ok(())
     }
 
-    /// Renders what samples that are not shaded themselves show in mirrors.
-    fn mirrors(&self, (rays, hits): (B::Rays, B::Hits), film: &mut B::Film) -> Result<(), RenderError> {
+    /// How many shared fragments, single samples and mirror samples there will be, about, unless counting takes longer than it is worth.
+    fn fragment_counts(
+        &self,
+        wave: &WaveOf<B>,
+        samples: &B::Samples,
+        film: &B::Film,
+        all: &Antialiasing,
+    ) -> Result<Option<[usize; 3]>, RenderError> {
+        let is_long = B::COUNTS_FOR_NOTHING || self.plan.gathering.is_some();
+        is_long.then(|| self.runner.backend.fragment_counts(wave, samples, film, all)).transpose()
+    }
+
+    /// Renders what samples that are not shaded themselves show in mirrors. `guess` is the work that is expected of them.
+    fn mirrors(&self, (rays, hits): (B::Rays, B::Hits), guess: Pieces, film: &mut B::Film) -> Result<(), RenderError> {
         let runner = &self.runner;
         let n = runner.backend.ray_count(&rays);
         if n == 0 {
             return Ok(());
         }
-        runner.context.work.expect(n as u64);
         let wave = self.wave(&rays, &hits, 1);
         let mirrored = runner.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
         drop((rays, hits));
-        self.waves(mirrored, None, Depths::MIRRORED, PARTS_OF_MERGED, film)
+        let mut guess = guess;
+        guess -= Pieces::of(Stage::MirrorRays, n as f64);
+        self.waves((mirrored, None), Depths::MIRRORED, PARTS_OF_MERGED, guess, film)
     }
 
-    /// Pieces of work of a wave of `rays` rays in all of its stages.
-    fn pieces_of_wave(&self, depth: u32, rays: u64) -> u64 {
-        // Primary rays.
-        rays + self.pieces_of_light(rays) + self.pieces_of_mirrors(depth, rays)
+    /// Work on a wave of `rays` rays once it is known what they see, with a guess of what follows if it `goes_on`.
+    fn pieces_of_wave(&self, rays: f64, new: bool, goes_on: bool) -> Pieces {
+        let mut pieces = self.pieces_of_light(rays, new);
+        if goes_on {
+            pieces += self.guess_after(rays).and(Stage::MirrorRays, rays);
+        }
+        pieces
     }
 
-    /// Those of the stage that finds the rays that go on.
-    fn pieces_of_mirrors(&self, depth: u32, rays: u64) -> u64 {
-        rays * u64::from(depth < self.plan.bounces || self.plan.is_transmissive)
+    /// A guess of the work on what surfaces send on of `rays` rays.
+    fn guess_after(&self, rays: f64) -> Pieces {
+        let next = GUESSED_MIRRORED * rays;
+        self.pieces_of_light(next, false).and(Stage::PrimaryRays, next).and(Stage::MirrorRays, next)
     }
 
-    /// Those of the stages that find what its surface points reflect.
-    fn pieces_of_light(&self, rays: u64) -> u64 {
-        // The technique's stages, gathering, shading; long tests and shading again for each further group.
-        let further = self.plan.lights.iter().len() as u64 - 1;
-        let gathering = u64::from(self.plan.gathering.is_some());
-        let transmittance = u64::from(self.plan.is_transmissive) * (1 + further);
-        rays * (self.technique.stages().len() as u64 + gathering + transmittance + 1 + 2 * further)
+    /// A guess of the work on the samples of `pixels` pixels, from number `done` on.
+    fn guess_samples(&self, pixels: f64, all: &Antialiasing, mut done: u32) -> Pieces {
+        let mut sum = Pieces::default();
+        while done < all.samples {
+            let (new, count) = (done == 0, all.at_once().min(all.samples - done));
+            done += count;
+            let samples = f64::from(count) * pixels;
+            let fragments = GUESSED_FRAGMENTS * pixels;
+            let mirrored = if all.mirrors { GUESSED_MIRRORED * pixels } else { 0.0 };
+            let counts =
+                if all.apart { [0.0, samples, mirrored] } else { [fragments, GUESSED_SPLIT * samples, mirrored] };
+            sum += self.pieces_of_samples(pixels, samples, all, new);
+            self.guess_fragments(counts, new && all.apart).into_iter().for_each(|guess| sum += guess);
+        }
+        sum
     }
+
+    /// Work on some samples of pixels, but for fragments.
+    fn pieces_of_samples(&self, pixels: f64, samples: f64, all: &Antialiasing, new: bool) -> Pieces {
+        let light = if all.apart { Pieces::default() } else { self.pieces_of_light(pixels, new) };
+        light.and(Stage::PixelSamples, samples).and(Stage::Fragments, pixels)
+    }
+
+    /// A guess of the work on so many shared fragments, single samples and mirror samples; single samples are `new` if nothing was gathered before for
+    /// their pixels.
+    fn guess_fragments(&self, [shared, single, mirror]: [f64; 3], new: bool) -> [Pieces; 3] {
+        // Glass sends on two rays.
+        let mirrored = if self.plan.is_transmissive { 2.0 * mirror } else { mirror };
+        let goes_on = self.goes_on(Depths::MIRRORED, Depths::MIRRORED.first);
+        let mirrors = self.pieces_of_wave(mirrored, false, goes_on).and(Stage::PrimaryRays, mirrored);
+        [
+            self.pieces_of_wave(shared, false, false),
+            self.pieces_of_wave(single, new, self.goes_on(Depths::ALL, 0)),
+            mirrors.and(Stage::MirrorRays, mirror),
+        ]
+    }
+
+    /// Work of the stages that find what surface points reflect.
+    fn pieces_of_light(&self, points: f64, new: bool) -> Pieces {
+        let Passes { technique, plan, .. } = self;
+        let gathered = plan.gathering.as_ref().map_or(0.0, |how| how.pieces(points, new));
+        let groups = plan.lights.iter().len() as f64;
+        let visibility = pieces_of_visibility(technique, plan, points);
+        visibility.and(Stage::Gather, gathered).and(Stage::Shade, groups * points)
+    }
+}
+
+/// Work of the stages that find what surface points see of lights. The last one of a technique is repeated for each group of lights.
+fn pieces_of_visibility(technique: &Technique, plan: &Plan, points: f64) -> Pieces {
+    let groups = plan.lights.iter().len() as f64;
+    let mut pieces = Pieces::default();
+    for &stage in technique.stages() {
+        pieces = pieces.and(stage, points);
+    }
+    if let Some(&last) = technique.stages().last() {
+        pieces = pieces.and(last, (groups - 1.0) * points);
+    }
+    let transmissive = if plan.is_transmissive { groups * points } else { 0.0 };
+    pieces.and(Stage::Transmittance, transmissive)
 }
 
 /// Does the work of `rows` rows band by band, initially `at_once` rows at a time. Returns the final number of rows at a time.
@@ -336,12 +432,12 @@ pub(crate) fn in_bands<B: Backend>(
     let mut first = 0;
     while first < rows {
         let rows = first..rows.min(first.saturating_add(at_once));
-        let (counted, done, total) = (context.tally.snapshot(), context.work.done(), context.work.total());
+        let (counted, work) = (context.tally.snapshot(), context.work.counted());
         match band(rows.clone()) {
             Ok(()) => first = rows.end,
             Err(RenderError::DeviceMemory { .. }) if rows.len() > 1 || runner.has_cache() => {
                 context.tally.restore(&counted);
-                context.work.rewind(done, total);
+                context.work.rewind(work);
                 if runner.evict() {
                     continue;
                 }

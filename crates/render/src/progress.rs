@@ -1,51 +1,134 @@
-//! Progress over all stages of an image: one total, counted in pieces.
+//! Progress over all stages of an image: the share of its time that has passed.
+//!
+//! What an image costs is not known before it is rendered: how many fragments and mirror rays there will be turns out on the way, and a ray that
+//! gathers light takes thousands of times as long as one that does not. So work is counted by stage, in pieces that are known or
+//! [guessed](Work::replace), and time is measured by stage:
+//!
+//! ```text
+//! left = Σ_s (expected_s − done_s) · seconds_s / done_s
+//! ```
+//!
+//! A stage that has not run yet takes as long as [`cost`] says, by the measure of those that have. The share that is done rises from one report to the
+//! next by the time between them, as a part of this time and what is left: so it never falls, and estimates that were wrong do little harm.
 
-use std::sync::Mutex;
+use std::iter::Sum;
+use std::ops::{AddAssign, SubAssign};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crate::observer::{Observer, Progress};
+use crate::render_context::RenderContext;
 use crate::stage::Stage;
 
 /// Minimum time between two progress reports on the whole image, seconds.
 const INTERVAL: f64 = 0.05;
+/// The share of a stage that must be done before its time says something.
+const TELLING: f64 = 0.02;
 
-/// The work of an image: done, and in total.
+/// Microseconds for which [`cost`] is trusted as much as what is measured.
+const TRUSTED: f64 = 2e5;
+
+/// Microseconds that a piece of a stage takes on two threads of a CPU, more or less: what is expected before anything is measured.
+fn cost(stage: Stage) -> f64 {
+    match stage {
+        Stage::Gather => 500.0,
+        Stage::AreaShadows | Stage::ShadowRays => 15.0,
+        Stage::AdaptiveShadows | Stage::ShortTests | Stage::LongTests | Stage::Transmittance => 3.0,
+        Stage::OccluderLists | Stage::Collect | Stage::Interpolate => 1.0,
+        Stage::CameraRays => 0.06,
+        _ => 0.25,
+    }
+}
+
+/// Pieces of work by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pieces([f64; Stage::ALL.len()]);
+
+impl Pieces {
+    /// Those of one stage.
+    pub fn of(stage: Stage, pieces: f64) -> Pieces {
+        Pieces::default().and(stage, pieces)
+    }
+
+    /// With those of a stage.
+    pub fn and(mut self, stage: Stage, pieces: f64) -> Pieces {
+        self.0[stage as usize] += pieces;
+        self
+    }
+
+    fn stage(&self, stage: Stage) -> f64 {
+        self.0[stage as usize]
+    }
+}
+
+impl AddAssign for Pieces {
+    fn add_assign(&mut self, other: Pieces) {
+        self.0.iter_mut().zip(other.0).for_each(|(pieces, more)| *pieces += more);
+    }
+}
+
+impl Sum for Pieces {
+    fn sum<I: Iterator<Item = Pieces>>(pieces: I) -> Pieces {
+        pieces.fold(Pieces::default(), |mut sum, pieces| {
+            sum += pieces;
+            sum
+        })
+    }
+}
+
+impl SubAssign for Pieces {
+    fn sub_assign(&mut self, other: Pieces) {
+        self.0.iter_mut().zip(other.0).for_each(|(pieces, less)| *pieces -= less);
+    }
+}
+
+/// The work of an image.
 ///
-/// A wave of n rays counts as n pieces in each of its stages. The number of camera rays is known from the beginning, the number of
-/// mirror rays only once they are traced.
+/// A wave of n rays counts as n pieces in each of its stages.
 #[derive(Debug)]
 pub struct Work {
     start: Instant,
-    total: AtomicU64,
-    done: AtomicU64,
-    /// The stage in progress.
-    current: Mutex<Option<Current>>,
-    /// The part in progress of an image whose total is known part by part.
-    part: Mutex<Option<Part>>,
+    state: Mutex<State>,
     /// Milliseconds between the start and the latest progress report on the whole image.
     reported: AtomicU64,
+    /// Held by the thread that tells of it: others would tell their news late.
+    telling: Mutex<()>,
 }
 
-/// A part of an image, such as a band, whose total is not known before it begins.
-#[derive(Clone, Copy, Debug)]
-struct Part {
-    /// The share of the image that was done before it, and after it.
-    before: f64,
-    after: f64,
-    /// Pieces done and expected when it began.
-    done: u64,
-    total: u64,
+/// What is known of it.
+#[derive(Debug)]
+struct State {
+    counted: Counted,
+    /// By stage, the seconds that what is done took.
+    seconds: Pieces,
+    /// The stage in progress.
+    current: Option<Current>,
+    /// The share of the image that was done before the part in progress, and is after it.
+    part: [f64; 2],
+    /// The share that was told, and when: seconds after the start.
+    told: (f64, f64),
+}
+
+/// Work that is expected, and done.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Counted {
+    expected: Pieces,
+    done: Pieces,
 }
 
 /// A stage in progress.
 #[derive(Clone, Copy, Debug)]
 struct Current {
     stage: Stage,
+    start: Instant,
+    /// Its own pieces.
     total: u64,
     done: u64,
-    /// Pieces of the whole image that the stage counts as.
-    share: u64,
+    /// Seconds after its start when the latest of them was done.
+    when: f64,
+    /// Pieces of the image that it counts as.
+    pieces: f64,
 }
 
 impl Default for Work {
@@ -57,55 +140,64 @@ impl Default for Work {
 impl Work {
     /// Nothing is expected yet.
     pub fn new() -> Work {
-        Work {
-            start: Instant::now(),
-            total: AtomicU64::new(0),
-            done: AtomicU64::new(0),
-            current: Mutex::new(None),
-            part: Mutex::new(None),
-            reported: AtomicU64::new(0),
-        }
+        let state = State {
+            counted: Counted::default(),
+            seconds: Pieces::default(),
+            current: None,
+            part: [0.0, 1.0],
+            told: (0.0, 0.0),
+        };
+        Work { start: Instant::now(), state: Mutex::new(state), reported: AtomicU64::new(0), telling: Mutex::new(()) }
     }
 
     /// Adds pieces to the image's total.
-    pub fn expect(&self, pieces: u64) {
-        self.total.fetch_add(pieces, Ordering::Relaxed);
+    pub fn expect(&self, pieces: Pieces) {
+        self.state().counted.expected += pieces;
     }
 
-    /// A part begins that is the share of the image from `before` to `after`: what is expected from now on is its own.
-    pub fn begin_part(&self, [before, after]: [f64; 2]) {
-        *self.part() = Some(Part { before, after, done: self.done(), total: self.total() });
+    /// Something better is known than `guess`, which was expected.
+    pub fn replace(&self, guess: &mut Pieces, better: Pieces) {
+        let mut state = self.state();
+        state.counted.expected -= std::mem::replace(guess, better);
+        state.counted.expected += better;
     }
 
-    /// Pieces of the image that are done, for [`rewind`](Work::rewind).
-    pub fn done(&self) -> u64 {
-        self.done.load(Ordering::Relaxed)
+    /// A part begins that is the share of the image from `before` to `after`: what is expected from now on is its own, and other parts of the same
+    /// size take as long.
+    pub fn begin_part(&self, part: [f64; 2]) {
+        let mut state = self.state();
+        state.part = part;
+        state.counted.expected = state.counted.done;
     }
 
-    /// Work done since then will be repeated; `added` pieces were expected since.
-    pub(crate) fn rewind(&self, done: u64, total: u64) {
-        self.done.store(done, Ordering::Relaxed);
-        self.total.store(total, Ordering::Relaxed);
+    /// What is counted, for [`rewind`](Work::rewind).
+    pub(crate) fn counted(&self) -> Counted {
+        self.state().counted
     }
 
-    /// Total pieces of the image, as far as known.
-    pub fn total(&self) -> u64 {
-        self.total.load(Ordering::Relaxed)
+    /// Work that was done since then will be repeated.
+    pub(crate) fn rewind(&self, counted: Counted) {
+        self.state().counted = counted;
     }
 
-    /// A stage begins that has `total` pieces of its own and counts as `share` pieces of the image.
-    pub fn begin(&self, observer: &dyn Observer, stage: Stage, total: u64, share: u64) {
-        *self.current() = Some(Current { stage, total, done: 0, share });
+    /// Whether all is done that is expected.
+    pub fn is_done(&self) -> bool {
+        let Counted { expected, done } = self.state().counted;
+        expected == done
+    }
+
+    /// A stage begins that has `total` pieces of its own and counts as `pieces` pieces of the image.
+    pub fn begin(&self, observer: &dyn Observer, stage: Stage, total: u64, pieces: f64) {
+        self.state().current = Some(Current { stage, start: Instant::now(), total, done: 0, when: 0.0, pieces });
         observer.begin(stage, total);
     }
 
     /// Some pieces of the current stage are done.
     pub(crate) fn advance(&self, observer: &dyn Observer, pieces: u64) {
-        if let Some(current) = self.current().as_mut() {
-            let before = current.of_picture();
+        if let Some(current) = &mut self.state().current {
             current.done += pieces;
+            current.when = current.start.elapsed().as_secs_f64();
             debug_assert!(current.done <= current.total, "{:?}: {} of {}", current.stage, current.done, current.total);
-            self.done.fetch_add(current.of_picture() - before, Ordering::Relaxed);
         }
         observer.advance(pieces);
         self.report(observer, false);
@@ -113,16 +205,23 @@ impl Work {
 
     /// The stage has ended. Pieces that it did not report are done as well.
     pub fn end(&self, observer: &dyn Observer, stage: Stage) {
-        let rest = self.current().map_or(0, |current| current.total - current.done);
+        let rest = self.state().current.map_or(0, |current| current.total - current.done);
         if rest > 0 {
-            self.advance(observer, rest);
+            observer.advance(rest);
         }
-        if let Some(current) = self.current().take() {
-            // A stage without pieces of its own is done as well.
-            self.done.fetch_add(current.share - current.of_picture(), Ordering::Relaxed);
+        let mut state = self.state();
+        if let Some(current) = state.current.take() {
+            state.counted.done += Pieces::of(stage, current.pieces);
+            state.seconds += Pieces::of(stage, current.start.elapsed().as_secs_f64());
         }
+        drop(state);
         self.report(observer, true);
         observer.end(stage);
+    }
+
+    /// The image is finished.
+    pub(crate) fn finish(&self, observer: &dyn Observer) {
+        observer.progress(Progress { done: 1.0, seconds: self.start.elapsed().as_secs_f64(), left: Some(0.0) });
     }
 
     fn report(&self, observer: &dyn Observer, always: bool) {
@@ -131,35 +230,128 @@ impl Work {
         if !always && ((now - last.min(now)) as f64) < 1e3 * INTERVAL {
             return;
         }
+        let _telling = match (self.telling.try_lock(), always) {
+            (Ok(telling), _) => telling,
+            (Err(_), true) => self.telling.lock().unwrap_or_else(PoisonError::into_inner),
+            (Err(_), false) => return,
+        };
         self.reported.store(now, Ordering::Relaxed);
-        if self.total() > 0 {
-            let done = self.share();
-            let left = (done > 0.0).then(|| seconds * (1.0 - done) / done);
-            observer.progress(Progress { done, seconds, left });
+        let seconds = self.start.elapsed().as_secs_f64();
+        let mut state = self.state();
+        let Some(left) = state.left(seconds) else { return };
+        let (told, when) = state.told;
+        let passed = (seconds - when).max(f64::MIN_POSITIVE);
+        let done = told + (1.0 - told) * passed / (passed + left);
+        state.told = (done, seconds);
+        drop(state);
+        observer.progress(Progress { done, seconds, left: Some(left) });
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Progress of work on many things that share what they need: the first ones take longest. It is done [in an order](spread) in which any number of
+/// the first ones are a sample of all. The time of n of them is a power of n, whose exponent is that of the latest doubling.
+pub(crate) struct Steps<'a> {
+    context: &'a RenderContext<'a>,
+    /// Pieces of the current stage that it counts as.
+    pieces: u64,
+    told: u64,
+    start: Instant,
+    /// How many were done, and the seconds until then.
+    marks: Vec<(usize, f64)>,
+}
+
+impl<'a> Steps<'a> {
+    /// None is done of work that counts as `pieces` pieces.
+    pub(crate) fn new(context: &'a RenderContext<'a>, pieces: usize) -> Steps<'a> {
+        Steps { context, pieces: pieces as u64, told: 0, start: Instant::now(), marks: Vec::new() }
+    }
+
+    /// `done` of `all` are done.
+    pub(crate) fn tell(&mut self, done: usize, all: usize) {
+        self.marks.push((done, self.start.elapsed().as_secs_f64()));
+        let share = if done < all { self.share(done as f64 / all as f64) } else { 1.0 };
+        self.tell_share(share);
+    }
+
+    /// Everything is done.
+    pub(crate) fn end(mut self) {
+        self.tell_share(1.0);
+    }
+
+    /// The share of the time that has passed when a share of the work is done; nothing before that can be told.
+    fn share(&self, done: f64) -> f64 {
+        let Some((&(last, now), before)) = self.marks.split_last() else { return 0.0 };
+        // The latest mark at which at most half of that was done.
+        let half = before.iter().rev().find(|(count, seconds)| 2 * count <= last && *seconds > 0.0);
+        half.map_or(0.0, |&(count, seconds)| {
+            let exponent = (now / seconds).ln() / (last as f64 / count as f64).ln();
+            done.powf(exponent.clamp(0.0, 1.0))
+        })
+    }
+
+    fn tell_share(&mut self, share: f64) {
+        let pieces = (self.pieces as f64 * share) as u64;
+        self.context.advance(pieces.saturating_sub(self.told));
+        self.told = self.told.max(pieces);
+    }
+}
+
+/// Numbers below `count` in an order in which any number of the first ones are spread evenly: the van der Corput sequence of base 2.
+pub(crate) fn spread(count: usize) -> impl Iterator<Item = usize> {
+    let bits = count.next_power_of_two().trailing_zeros();
+    let reversed = move |number: usize| if bits == 0 { 0 } else { number.reverse_bits() >> (usize::BITS - bits) };
+    (0..1 << bits).map(reversed).filter(move |&number| number < count)
+}
+
+impl State {
+    /// About how many seconds the rest takes, `seconds` after the start; `None` before anything is known.
+    fn left(&self, seconds: f64) -> Option<f64> {
+        let Counted { expected, done } = &self.counted;
+        if *expected == Pieces::default() {
+            return None;
         }
-    }
-
-    /// The share of the image that is done.
-    fn share(&self) -> f64 {
-        let whole = Part { before: 0.0, after: 1.0, done: 0, total: 0 };
-        let Part { before, after, done, total } = self.part().unwrap_or(whole);
-        let (done, total) = (self.done().saturating_sub(done), self.total().saturating_sub(total));
-        before + (after - before) * done as f64 / total.max(1) as f64
-    }
-
-    fn part(&self) -> std::sync::MutexGuard<'_, Option<Part>> {
-        self.part.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-    }
-
-    fn current(&self) -> std::sync::MutexGuard<'_, Option<Current>> {
-        self.current.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        // How fast this machine is.
+        let (mut spent, mut costs) = (0.0, 0.0);
+        for &stage in Stage::ALL.iter().filter(|&&stage| done.stage(stage) > 0.0) {
+            spent += self.seconds.stage(stage);
+            costs += cost(stage) * done.stage(stage);
+        }
+        let speed = 1e-6 * (1e6 * spent + TRUSTED) / (costs + TRUSTED);
+        let mut left = 0.0;
+        for &stage in &Stage::ALL {
+            let mut rate = match done.stage(stage) {
+                0.0 => speed * cost(stage),
+                pieces => self.seconds.stage(stage) / pieces,
+            };
+            let mut pieces = expected.stage(stage) - done.stage(stage);
+            if let Some(current) = self.current.filter(|current| current.stage == stage) {
+                pieces -= current.pieces;
+                let (elapsed, share) = (current.start.elapsed().as_secs_f64(), current.share());
+                if share >= TELLING {
+                    let whole = current.when / share;
+                    rate = (self.seconds.stage(stage) + whole) / (done.stage(stage) + current.pieces).max(1.0);
+                    left += (whole - elapsed).max(0.25 * (elapsed - current.when));
+                } else if current.pieces > 0.0 {
+                    // It has taken longer than it was thought to in all: then for as long again.
+                    left += (rate * current.pieces - elapsed).max(elapsed);
+                }
+            }
+            if pieces > 0.0 {
+                left += rate * pieces;
+            }
+        }
+        let [_, after] = self.part;
+        left.is_finite().then(|| (seconds + left) / after - seconds)
     }
 }
 
 impl Current {
-    /// Pieces of the image that this stage has completed.
-    fn of_picture(&self) -> u64 {
-        let share = u128::from(self.share) * u128::from(self.done) / u128::from(self.total.max(1));
-        share as u64
+    /// The share that is done.
+    fn share(&self) -> f64 {
+        self.done as f64 / self.total.max(1) as f64
     }
 }

@@ -34,11 +34,11 @@ impl Context<'_> {
         prepared: &PreparedScene,
         settings: &Settings,
         metering: &Metering,
-        mut render: impl FnMut(&PreparedScene, &Settings) -> Result<Frame, RenderError>,
+        mut render: impl FnMut(&PreparedScene, &Settings, &dyn Host) -> Result<Frame, RenderError>,
     ) -> Result<(Frame, f32), Error> {
         let Context { plan, load, host, .. } = self;
-        let (mut frame, stops) = metering.picture(prepared, settings, host, |prepared, settings| {
-            host.during(RENDERING, || host.cancellable(|| render(prepared, settings)))
+        let (mut frame, stops) = metering.picture(prepared, settings, host, |prepared, settings, host| {
+            host.during(RENDERING, || host.cancellable(|| render(prepared, settings, host)))
         })?;
         if plan.settings.partial {
             host.remark(rows(&frame));

@@ -4,13 +4,14 @@
 //! image is rendered without background, metered, and put in front of it. Only mirrors need a second image: they show the background, too.
 
 use std::borrow::Cow;
+use std::time::Instant;
 
 use glam::Vec3;
 use lightmesh_image as image;
 use lightmesh_render::{Frame, PreparedScene, RenderError, Settings};
 use lightmesh_scene::{Falloff, Scene};
 
-use crate::host::Host;
+use crate::host::{Host, Part};
 use crate::stage::Staged;
 use crate::value::Exposure;
 
@@ -109,19 +110,23 @@ impl Metering {
         prepared: &PreparedScene,
         settings: &Settings,
         host: &dyn Host,
-        mut render: impl FnMut(&PreparedScene, &Settings) -> Result<Frame, RenderError>,
+        mut render: impl FnMut(&PreparedScene, &Settings, &dyn Host) -> Result<Frame, RenderError>,
     ) -> Result<(Frame, f32), RenderError> {
         // An automatic exposure is that of the whole image.
         let mut settings = settings.clone();
         let crop = settings.crop.take_if(|_| self.is_automatic());
         settings.transparent |= self.is_apart();
-        let mut frame = render(prepared, &settings)?;
+        let start = Instant::now();
+        let is_reflected = self.is_reflected(&prepared.scene, &settings);
+        let times = if is_reflected { 2 } else { 1 };
+        let mut frame = render(prepared, &settings, &Part::nth(host, 0, times, 0.0))?;
         let stops = self.stops(&frame, host);
         if let Some(background) = self.background(stops) {
-            if self.is_reflected(&prepared.scene, &settings) && !host.cancelled() {
+            if is_reflected && !host.cancelled() {
                 settings.transparent = false;
                 let lights = prepared.scene.lights.clone().with_background(background);
-                frame = render(&prepared.with_lights(lights), &settings)?;
+                let part = Part::nth(host, 1, times, start.elapsed().as_secs_f64());
+                frame = render(&prepared.with_lights(lights), &settings, &part)?;
             } else {
                 frame = self.put_behind(frame, background);
             }

@@ -1,9 +1,9 @@
 //! The program around the work: what it shows of it, what it calls it, and how it ends it.
 
 use std::cell::Cell;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use lightmesh_render::Observer;
+use lightmesh_render::{Observer, Progress, Setting, Stage};
 
 use crate::words::Words;
 
@@ -99,6 +99,88 @@ impl dyn Host + '_ {
     /// Does `work` that ends soon when it is cancelled.
     pub fn cancellable<T>(&self, work: impl FnOnce() -> T) -> T {
         with_result(work, |work| self.in_cancellable(work))
+    }
+}
+
+/// The host of a part of some work, which hears of its progress as that of the whole.
+pub struct Part<'a> {
+    host: &'a dyn Host,
+    shares: [f64; 2],
+    /// Seconds of the whole before the part.
+    spent: f64,
+    start: Instant,
+}
+
+impl<'a> Part<'a> {
+    /// The part of the whole between two shares, after `spent` seconds of it.
+    pub fn new(host: &'a dyn Host, shares: [f64; 2], spent: f64) -> Part<'a> {
+        Part { host, shares, spent, start: Instant::now() }
+    }
+
+    /// Number `index` of `count` parts.
+    pub fn nth(host: &'a dyn Host, index: usize, count: usize, spent: f64) -> Part<'a> {
+        let share = |index: usize| index as f64 / count.max(1) as f64;
+        Part::new(host, [share(index), share(index + 1)], spent)
+    }
+}
+
+impl Observer for Part<'_> {
+    fn begin(&self, stage: Stage, total: u64) {
+        self.host.begin(stage, total);
+    }
+
+    fn advance(&self, pieces: u64) {
+        self.host.advance(pieces);
+    }
+
+    fn progress(&self, progress: Progress) {
+        self.host.progress(progress.of_whole(self.shares, self.spent + self.start.elapsed().as_secs_f64()));
+    }
+
+    fn end(&self, stage: Stage) {
+        self.host.end(stage);
+    }
+
+    fn report_default(&self, setting: Setting, text: &str) {
+        self.host.report_default(setting, text);
+    }
+
+    fn note(&self, text: &str) {
+        self.host.note(text);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.host.cancelled()
+    }
+}
+
+impl Host for Part<'_> {
+    fn words(&self) -> Words {
+        self.host.words()
+    }
+
+    fn warning(&self, text: &str) {
+        self.host.warning(text);
+    }
+
+    fn warning_about(&self, what: &'static str, text: &str) {
+        self.host.warning_about(what, text);
+    }
+
+    fn frame(&self, frame: &FrameDone) {
+        self.host.frame(frame);
+    }
+
+    fn remark(&self, text: String) {
+        self.host.remark(text);
+    }
+
+    fn in_task(&self, task: &str, work: &mut dyn FnMut()) {
+        self.host.in_task(task, work);
+    }
+
+    fn in_cancellable(&self, work: &mut dyn FnMut()) {
+        self.host.in_cancellable(work);
     }
 }
 

@@ -68,8 +68,8 @@ impl StagedImage {
         self.ground
     }
 
-    /// Renders the image by `render`, which may be called twice: with a ground that mirrors show. Returns it with the exposure of image files, in
-    /// stops.
+    /// Renders the image by `render`, which may be called twice: with a ground that mirrors show. It is given the host to tell of progress. Returns the
+    /// image with the exposure of image files, in stops.
     ///
     /// # Errors
     /// Those of `render`.
@@ -78,7 +78,7 @@ impl StagedImage {
         prepared: &PreparedScene,
         settings: &Settings,
         host: &dyn Host,
-        render: impl FnMut(&PreparedScene, &Settings) -> Result<Frame, RenderError>,
+        render: impl FnMut(&PreparedScene, &Settings, &dyn Host) -> Result<Frame, RenderError>,
     ) -> Result<(Frame, f32), RenderError> {
         self.metering.picture(prepared, settings, host, render)
     }

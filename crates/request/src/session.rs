@@ -1,6 +1,7 @@
 //! The work on a plan: a scene that is opened, staged and prepared, and then rendered as a picture, a film or a sun study.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use lightmesh_image::Format;
 use lightmesh_render::{Frame, PreparedScene, Renderer, Settings};
@@ -10,7 +11,7 @@ use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::film::{self, FrameRange, FrameRenderer, FrameWriter, RenderedFrame};
-use crate::host::{BUILDING, Host};
+use crate::host::{BUILDING, Host, Part};
 use crate::mesh_file::Mesh;
 use crate::plan::Plan;
 use crate::save::save;
@@ -117,7 +118,9 @@ impl Session {
     /// # Errors
     /// [`Error`].
     pub fn picture(&self, renderer: &Renderer, host: &dyn Host) -> Result<(Frame, f32), Error> {
-        let render = |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, host);
+        let render = |prepared: &PreparedScene, settings: &Settings, host: &dyn Host| {
+            renderer.render_prepared(prepared, settings, host)
+        };
         self.context(renderer, host).picture(
             &self.prepared.scene,
             &self.prepared.plan.settings,
@@ -135,7 +138,7 @@ impl Session {
         let context = Context { renderer, plan: &plan, load, host };
         let mut mesh = Mesh::open(&plan, (renderer, &prepared), false, host)?;
         let has_file = mesh.has_file();
-        let render = |prepared: &PreparedScene, settings: &Settings| match has_file {
+        let render = |prepared: &PreparedScene, settings: &Settings, host: &dyn Host| match has_file {
             true => renderer.render_with(&mut mesh.cache, prepared, settings, host),
             false => renderer.render_prepared(prepared, settings, host),
         };
@@ -181,7 +184,9 @@ impl Session {
             frames,
             writer,
             load: self.load,
+            total: range.numbers.len(),
             left: range.numbers.into_iter(),
+            spent: 0.0,
         })
     }
 
@@ -202,13 +207,19 @@ pub struct Frames {
     /// `None` if frames are not written, or all are.
     writer: Option<FrameWriter>,
     load: f64,
+    /// How many there were in the beginning.
+    total: usize,
     left: std::vec::IntoIter<u32>,
+    /// The seconds that frames took so far.
+    spent: f64,
 }
 
 impl Frames {
     /// Renders the next frame, and writes it; `None` after the last one. After an error there is none.
     pub fn next(&mut self, renderer: &Renderer, host: &dyn Host) -> Option<Result<RenderedFrame, Error>> {
-        let context = Context { renderer, plan: &self.plan, load: self.load, host };
+        let start = Instant::now();
+        let part = Part::nth(host, self.total - self.left.len(), self.total, self.spent);
+        let context = Context { renderer, plan: &self.plan, load: self.load, host: &part };
         let Some(number) = self.left.next() else {
             let closed = self.writer.take()?.close();
             self.frames.save_mesh(host);
@@ -218,6 +229,7 @@ impl Frames {
             Some(writer) => writer.next(number, &mut self.frames, context),
             None => self.frames.render(number, context),
         });
+        self.spent += start.elapsed().as_secs_f64();
         Some(rendered.map_err(|cause| {
             self.left = Vec::new().into_iter();
             match self.writer.take() {

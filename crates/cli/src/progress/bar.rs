@@ -1,4 +1,4 @@
-//! A progress bar for one stage after another, with the progress of the whole image next to it.
+//! A progress bar for all that is rendered, with the stage in progress.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmesh::Stage;
@@ -6,35 +6,31 @@ use lightmesh::render::Progress;
 
 use crate::output;
 
+/// What the bar counts to.
+const LENGTH: u64 = 1000;
+
 /// A bar on standard error, removed when dropped.
 pub(super) struct Bar(ProgressBar);
 
 impl Bar {
     pub(super) fn new() -> Bar {
-        let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
+        let bar = ProgressBar::with_draw_target(Some(LENGTH), ProgressDrawTarget::stderr());
         // If the template is invalid, the library's default remains.
-        if let Ok(style) = ProgressStyle::with_template("{msg:12} {bar:40} {percent:>3}%  {prefix}") {
+        if let Ok(style) = ProgressStyle::with_template("{msg:16} {bar:40} {percent:>3}%{prefix}") {
             bar.set_style(style);
         }
         Bar(bar)
     }
 
-    pub(super) fn begin(&self, stage: Stage, total: u64) {
-        self.0.reset();
-        self.0.set_length(total);
+    pub(super) fn begin(&self, stage: Stage) {
         self.0.set_message(stage.name().replace('_', " "));
     }
 
-    /// Cheap: counts, and draws at most 20 times per second.
-    pub(super) fn advance(&self, pieces: u64) {
-        self.0.inc(pieces);
-    }
-
-    /// Shows the progress of the whole image, and the estimated remaining time.
+    /// Shows how much is done, and the estimated remaining time.
     pub(super) fn whole(&self, progress: Progress) {
-        let percent = (100.0 * progress.done).floor();
         let left = progress.left.map_or_else(String::new, |left| format!(", {left:.0} s left"));
-        self.0.set_prefix(format!("image {percent}%{left}"));
+        self.0.set_prefix(left);
+        self.0.set_position((LENGTH as f64 * progress.done) as u64);
     }
 
     /// Prints a line above the bar.

@@ -9,9 +9,9 @@
 //! {"event":"note","text":"…"}
 //! ```
 //!
-//! `image` refers to the whole image: the part that is done, seconds since it was started, and seconds remaining (null at the very
-//! beginning). In the other events, seconds count from the start of the stage. A stage repeats for each band of an image that is split to
-//! fit into memory, and for each bounce.
+//! `image` refers to all that is rendered, be it an image, a film, or hours of sun: the part that is done, which never falls, seconds since it was
+//! started, and about how many remain (null at the very beginning). In the other events, seconds count from the start of the stage. A stage repeats
+//! for each band of an image that is split to fit into memory, and for each bounce.
 //!
 //! `frame` says that a frame of a film is finished, and all of its files are there: its number in the film; which of the `count` frames of this
 //! run it is, from 1 on; how many frames were there before and are kept; seconds that it took to render, and about how many the others of the run

@@ -21,7 +21,7 @@ pub(super) struct Lines {
     _running: Sender<()>,
 }
 
-/// What is known of the image in progress.
+/// What is known of the work in progress.
 #[derive(Clone, Copy, Debug, Default)]
 struct State {
     stage: Option<Stage>,
@@ -67,18 +67,18 @@ impl State {
     /// A line after so much time, while the program does `task`; `None` if nothing is known.
     fn line(&self, elapsed: Duration, task: &str) -> Option<String> {
         let what = match self.progress {
-            Some(progress) if task == RENDERING => self.image(progress),
+            Some(progress) if task == RENDERING => self.rendering(progress),
             _ if task.is_empty() => return None,
             _ => task.to_owned(),
         };
         Some(format!("{} s: {what}", elapsed.as_secs()))
     }
 
-    /// How far the image is.
-    fn image(&self, Progress { done, left, .. }: Progress) -> String {
+    /// How far it is.
+    fn rendering(&self, Progress { done, left, .. }: Progress) -> String {
         let left = left.map_or_else(String::new, |left| format!(", about {left:.0} s left"));
         let stage = self.stage.map_or_else(String::new, |stage| format!(" ({})", stage.name().replace('_', " ")));
-        format!("image {:.0}%{left}{stage}", (100.0 * done).floor())
+        format!("{:.0}%{left}{stage}", (100.0 * done).floor())
     }
 }
 
@@ -89,11 +89,11 @@ mod tests {
     const AFTER: Duration = Duration::from_millis(20_300);
 
     #[test]
-    fn a_line_says_how_far_the_image_is_or_what_is_done() {
+    fn a_line_says_how_far_it_is_or_what_is_done() {
         let progress = Some(Progress { done: 0.419, seconds: 14.0, left: Some(19.6) });
         let state = State { stage: Some(Stage::ShortTests), progress };
         let line = |state: State, task| state.line(AFTER, task);
-        let wanted = "20 s: image 41%, about 20 s left (short tests)";
+        let wanted = "20 s: 41%, about 20 s left (short tests)";
         assert_eq!(line(state, RENDERING).as_deref(), Some(wanted));
         assert_eq!(line(state, "writing the image").as_deref(), Some("20 s: writing the image"));
         assert_eq!(line(State::default(), "reading a.obj").as_deref(), Some("20 s: reading a.obj"));

@@ -91,7 +91,7 @@ impl Observer for Watcher {
     fn begin(&self, stage: Stage, total: u64) {
         match &self.sink {
             Sink::Plain => {}
-            Sink::Bar(bar) => bar.begin(stage, total),
+            Sink::Bar(bar) => bar.begin(stage),
             Sink::Lines(lines) => lines.begin(stage),
             Sink::Json(json) => json.begin(stage, total),
         }
@@ -99,8 +99,7 @@ impl Observer for Watcher {
 
     fn advance(&self, pieces: u64) {
         match &self.sink {
-            Sink::Plain | Sink::Lines(_) => {}
-            Sink::Bar(bar) => bar.advance(pieces),
+            Sink::Plain | Sink::Bar(_) | Sink::Lines(_) => {}
             Sink::Json(json) => json.advance(pieces),
         }
     }

@@ -3,8 +3,9 @@
 use std::time::Instant;
 
 use lightmesh::render::{Choice, Stats, devices};
+use lightmesh::request::film::FrameRange;
 use lightmesh::request::film::check_encoder;
-use lightmesh::request::{Error, Plan, Session};
+use lightmesh::request::{Error, Part, Plan, Session};
 use lightmesh::{Device, Frame, Observer, Renderer};
 use lightmesh_memory::Bytes;
 
@@ -13,6 +14,9 @@ use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Watcher;
+
+/// The share of a day's film and hours that the hours take, more or less.
+const HOURS: f64 = 0.1;
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let plan = Plan::new(args.order())?;
@@ -37,17 +41,31 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         watcher.note(&format!("smooth {degrees}: made {made} normals (--smooth off shows facets)"));
     }
     let session = Session::begin(&renderer, plan, scene, load, &watcher)?;
-    if let Some(done) = session.write_sun_hours(&renderer, &watcher)? {
-        if range.is_some() { watcher.note(&done) } else { watcher.summary(&done) }
-    }
     if let Some(range) = range {
-        watcher.summary(&session.write_film(range, &renderer, &watcher)?);
-        return Ok(());
+        return film(&session, range, &renderer, &watcher);
+    }
+    if let Some(done) = session.write_sun_hours(&renderer, &watcher)? {
+        watcher.summary(&done);
     }
     if session.plan().sun.is_some() {
         return Ok(());
     }
     picture(session, args, &renderer, &watcher)
+}
+
+/// Renders the frames of a film, after the hours of direct sun if these are asked for, too.
+fn film(session: &Session, range: FrameRange, renderer: &Renderer, watcher: &Watcher) -> Result<(), Failure> {
+    let start = Instant::now();
+    let mut hours = 0.0;
+    if session.plan().sun.as_ref().is_some_and(|study| !study.outputs.is_empty()) {
+        hours = HOURS;
+    }
+    if let Some(done) = session.write_sun_hours(renderer, &Part::new(watcher, [0.0, hours], 0.0))? {
+        watcher.note(&done);
+    }
+    let part = Part::new(watcher, [hours, 1.0], start.elapsed().as_secs_f64());
+    watcher.summary(&session.write_film(range, renderer, &part)?);
+    Ok(())
 }
 
 /// Renders the picture and writes its files.

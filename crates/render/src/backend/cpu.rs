@@ -28,6 +28,7 @@ use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
 use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
+use crate::stages::fragments;
 use crate::stages::irradiance_cache::cpu::SurfaceLight;
 use crate::stages::irradiance_cache::{self, Gathering};
 use crate::stages::pixel_samples::SampleRange;
@@ -125,6 +126,18 @@ impl Backend for Cpu {
 
     fn long_test_count(&self, wave: &WaveOf<Cpu>, points: &UsedPoints) -> usize {
         points.count() * wave.context.sampling.rays_to(wave.lights())
+    }
+
+    const COUNTS_FOR_NOTHING: bool = true;
+
+    fn fragment_counts(
+        &self,
+        wave: &WaveOf<Cpu>,
+        samples: &PixelSamples,
+        film: &Picture,
+        all: &Antialiasing,
+    ) -> Result<[usize; 3], RenderError> {
+        Ok(fragments::cpu::fragment_counts(wave, samples, film, all))
     }
 
     stage_table!(stages_on_cpu);

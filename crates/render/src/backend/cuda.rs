@@ -28,6 +28,7 @@ use crate::render_context::RenderContext;
 use crate::settings::Acceleration;
 use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
+use crate::stages::fragments;
 use crate::stages::irradiance_cache::cuda::{DeviceGathered, DeviceSurfaceLight};
 use crate::stages::irradiance_cache::{self, Gathering};
 use crate::stages::pixel_samples::SampleRange;
@@ -135,6 +136,16 @@ impl<R: Runtime> Backend for Cuda<R> {
 
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &DevicePoints<R>) -> usize {
         points.count * wave.context.sampling.rays_to(&wave.scene.host.scene.lights)
+    }
+
+    fn fragment_counts(
+        &self,
+        wave: &WaveOf<Self>,
+        samples: &DeviceSamples<R>,
+        film: &DeviceFilm<R>,
+        _: &Antialiasing,
+    ) -> Result<[usize; 3], RenderError> {
+        fragments::cuda::fragment_counts(self, wave, samples, film)
     }
 
     stage_table!(stages_on_cuda);

@@ -152,6 +152,18 @@ pub trait Backend: Sized {
     /// Number of long tests from these light points, to all lights.
     fn long_test_count(&self, wave: &WaveOf<Self>, points: &Self::Points) -> usize;
 
+    /// Whether [`Backend::fragment_counts`] takes no time to speak of.
+    const COUNTS_FOR_NOTHING: bool = false;
+
+    /// How many shared fragments, single samples and mirror samples there will be, but for pixels that will be split.
+    fn fragment_counts(
+        &self,
+        wave: &WaveOf<Self>,
+        samples: &Self::Samples,
+        film: &Self::Film,
+        all: &Antialiasing,
+    ) -> Result<[usize; 3], RenderError>;
+
     stage_table!(stage_methods);
 
     /// Finds what each surface point receives from its surroundings and from other surfaces, by what is `kept` and what is missing there.

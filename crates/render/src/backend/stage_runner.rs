@@ -46,9 +46,19 @@ impl<'a, B: Backend> StageRunner<'a, B> {
         [rays, pieces]: [usize; 2],
         work: impl FnOnce(&'a B) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
+        self.counted_stage(stage, (rays as f64, pieces), work)
+    }
+
+    /// The same, where its part of the image's work is not that of its rays.
+    pub(crate) fn counted_stage<T>(
+        &self,
+        stage: Stage,
+        (counted, pieces): (f64, usize),
+        work: impl FnOnce(&'a B) -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
         let StageRunner { backend, context, .. } = *self;
         context.check()?;
-        context.work.begin(context.observer, stage, pieces as u64, rays as u64);
+        context.work.begin(context.observer, stage, pieces as u64, counted);
         let result = backend.timed(context, stage, || work(backend));
         context.work.end(context.observer, stage);
         let result = result?;
@@ -117,7 +127,7 @@ impl<'a, B: Backend> StageRunner<'a, B> {
         work: impl FnOnce(&'a B) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
         let StageRunner { backend, context, .. } = *self;
-        context.work.begin(context.observer, stage, 1, 0);
+        context.work.begin(context.observer, stage, 1, 0.0);
         let result = context.wall_time(stage, || work(backend));
         context.work.end(context.observer, stage);
         result

@@ -171,7 +171,7 @@ impl<R: Runtime> Cuda<R> {
         if let Some(copy) = resident.find(&scene.geometry) {
             return Ok(copy);
         }
-        context.work.begin(context.observer, Stage::Upload, 1, 0);
+        context.work.begin(context.observer, Stage::Upload, 1, 0.0);
         let upload = || {
             let textures = self.device_textures(scene)?;
             Upload { cuda: self, buffers: Vec::new() }.geometry(scene, textures)

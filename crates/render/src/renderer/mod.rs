@@ -270,6 +270,7 @@ fn points_on<B: Backend>(
     let on_device = runner.or_evict(|backend| backend.scene(&context, scene, resolved.plan.memory_limit))?;
     let Resolved { technique, plan, .. } = &resolved;
     let (visibility, rows) = Baking { runner, scene: &on_device, technique, plan }.bake(points)?;
+    context.work.finish(observer);
     let stats =
         report::stats(&context, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
     Ok(PointVisibility { visibility, lights: scene.scene.lights.len(), stats })

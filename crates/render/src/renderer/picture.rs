@@ -46,6 +46,9 @@ pub(super) fn picture_on<B: Backend>(
     let resolved = admit(backend, cache.as_deref_mut(), scene, settings, observer)?;
     let context = resolved.context(observer).with_rows(rows);
     let (picture, rows_at_once) = render(backend, cache, &context, &resolved)?;
+    if picture.finished == resolved.plan.size[1] {
+        context.work.finish(observer);
+    }
     let seconds = start.elapsed().as_secs_f64();
     let stats = report::stats(&context, &resolved, DeviceFacts::of(backend), rows_at_once, seconds);
     crop(develop(picture, &resolved, stats), settings.crop)

@@ -80,8 +80,9 @@ impl FrameRenderer {
         let Context { renderer, host, .. } = context;
         let (prepared, when) = self.at(number, context)?;
         let cache = &mut self.mesh.cache;
-        let render =
-            |prepared: &PreparedScene, settings: &Settings| renderer.render_with(cache, prepared, settings, host);
+        let render = |prepared: &PreparedScene, settings: &Settings, host: &dyn Host| {
+            renderer.render_with(cache, prepared, settings, host)
+        };
         let (frame, stops) = context.picture(&prepared, &self.settings, &self.metering, render)?;
         self.mesh.check(host);
         let scene = prepared.scene.clone();
@@ -122,8 +123,9 @@ impl FrameRenderer {
         numbers.dedup();
         for &number in &numbers {
             let (prepared, _) = self.at(number, context)?;
-            let render =
-                |prepared: &PreparedScene, settings: &Settings| renderer.render_prepared(prepared, settings, &quiet);
+            let render = |prepared: &PreparedScene, settings: &Settings, _: &dyn Host| {
+                renderer.render_prepared(prepared, settings, &quiet)
+            };
             if self.metering.is_automatic() {
                 let (_, stops) = quietly.picture(&prepared, &reduced(settings), &self.metering, render)?;
                 exposures.push(stops);
@@ -131,7 +133,7 @@ impl FrameRenderer {
             if asks_step {
                 // The step depends on the whole image, of which one pixel is rendered.
                 let pixel = settings.clone().with_crop(Crop::new([0, 0], [1, 1]));
-                steps.extend(render(&prepared, &pixel)?.stats.settings.step);
+                steps.extend(render(&prepared, &pixel, &quiet)?.stats.settings.step);
             }
         }
         let chosen = Chosen { exposure: median(exposures), step: median(steps) };

@@ -13,7 +13,7 @@ use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::files::PictureFiles;
-use crate::host::FrameDone;
+use crate::host::{FrameDone, Part};
 use crate::manifest::Manifest;
 use crate::plan::Plan;
 use crate::save::save;
@@ -140,8 +140,10 @@ fn render_all(
     context: Context,
     queue: &SyncSender<Finished>,
 ) -> Result<(), InFrame> {
-    let pending = Pending::default();
-    for &number in &range.numbers {
+    let (pending, start) = (Pending::default(), Instant::now());
+    for (index, &number) in range.numbers.iter().enumerate() {
+        let part = Part::nth(context.host, index, range.numbers.len(), start.elapsed().as_secs_f64());
+        let context = Context { host: &part, ..context };
         let in_frame = |cause| Box::new((number, cause));
         let files = files_of(context.plan, number).map_err(in_frame)?;
         let rendered = match renderer.render(number, context) {

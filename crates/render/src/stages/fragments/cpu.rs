@@ -1,6 +1,7 @@
 //! Fragments on the CPU.
 
 use std::cell::OnceCell;
+use std::ops::Range;
 
 use glam::Vec3;
 use lightmesh_layout::constants::{CONTRAST_FLOOR, PIXEL_SHARED, PIXEL_SPLIT};
@@ -35,8 +36,7 @@ pub(crate) fn fragments(
     }
 
     // 2. The fragments of the others.
-    let width = film.size[0];
-    let kept = film.kept.start * width..film.kept.end * width;
+    let kept = kept_pixels(film);
     let of_batch = |pixels: &[u32]| {
         let mut lists = [(); 3].map(|()| (wave.rays.empty(), Vec::new()));
         for &pixel in pixels.iter().filter(|pixel| kept.contains(pixel)) {
@@ -77,6 +77,31 @@ pub(crate) fn fragments(
         }
     }
     lists
+}
+
+/// How many there will be of each list, but for pixels that will be split.
+pub(crate) fn fragment_counts(
+    wave: &HostWave,
+    samples: &PixelSamples,
+    film: &Picture,
+    all: &Antialiasing,
+) -> [usize; 3] {
+    let kept = kept_pixels(film);
+    let of_batch = |pixels: &[u32]| {
+        let mut counts = [0; 3];
+        for &pixel in pixels.iter().filter(|pixel| kept.contains(pixel)) {
+            Pixel { wave, samples, all, pixel }.each_fragment(|Fragment { list, .. }| counts[list] += 1);
+        }
+        counts
+    };
+    let sum = |a: [usize; 3], b: [usize; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+    wave.rays.pixels.par_chunks(BATCH).map(of_batch).reduce(|| [0; 3], sum)
+}
+
+/// The pixels that count.
+fn kept_pixels(film: &Picture) -> Range<u32> {
+    let width = film.size[0];
+    film.kept.start * width..film.kept.end * width
 }
 
 /// Whether the radiance of a shared pixel differs from a neighbour's.
@@ -124,14 +149,30 @@ struct Pixel<'a> {
     pixel: u32,
 }
 
+/// A part of a pixel's samples that is shaded, or a mirror sample.
+struct Fragment {
+    /// Shared fragments, single samples, mirror samples.
+    list: usize,
+    /// The first of its samples.
+    sample: u32,
+    /// All of them, as bits, if they are shared.
+    shared: u32,
+    /// Its share of the pixel.
+    weight: f32,
+}
+
 impl Pixel<'_> {
     /// Adds its shared fragments, its single samples and its mirror samples.
     fn add_fragments(&self, lists: &mut [(RayList, Vec<Hit>); 3]) {
+        let pattern = self.all.pattern(self.wave.rays.window.number(self.pixel));
+        self.each_fragment(|fragment| self.add(&mut lists[fragment.list], &pattern, &fragment));
+    }
+
+    /// Hands each of them to `take`.
+    fn each_fragment(&self, mut take: impl FnMut(Fragment)) {
         let Pixel { wave, samples, all, pixel } = *self;
         let state = samples.state[(pixel - samples.first) as usize];
-        let pattern = all.pattern(self.wave.rays.window.number(pixel));
-        let mut add =
-            |list: usize, sample, shared, weight| self.add(&mut lists[list], &pattern, sample, shared, weight);
+        let mut add = |list, sample, shared, weight| take(Fragment { list, sample, shared, weight });
         let (count, single) = (samples.numbers.len() as u32, 1.0 / all.samples as f32);
         if state == PIXEL_SHARED {
             let followed = mirrored_samples(wave.scene, all, samples.hit(pixel, 0), count);
@@ -160,7 +201,8 @@ impl Pixel<'_> {
         }
     }
 
-    fn add(&self, (list, hits): &mut (RayList, Vec<Hit>), pattern: &Pattern, sample: u32, shared: u32, weight: f32) {
+    fn add(&self, (list, hits): &mut (RayList, Vec<Hit>), pattern: &Pattern, fragment: &Fragment) {
+        let &Fragment { sample, shared, weight, .. } = fragment;
         hits.push(*self.samples.hit(self.pixel, sample));
         let sample = self.samples.numbers.start + sample;
         let view = self.wave.rays.view.expect("the rays are a camera's");

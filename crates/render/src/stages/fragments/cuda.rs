@@ -20,6 +20,53 @@ const FIRST: u64 = 256;
 /// Rays with what they see.
 type Fragments<R> = (DeviceRays<R>, DeviceHits<R>);
 
+/// How many each block has of each list.
+type Counts<R> = [Buffer<R, u32>; 3];
+
+/// A launch of a kernel for each of a wave's blocks, which counts as so much progress.
+fn launch<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    (kernel, progress): (Kernel, usize),
+    record: &PixelSamples,
+) -> Result<(), RenderError> {
+    let blocks = wave.rays.blocks(BLOCK_SIDE);
+    let work = Work { units: blocks, cost: u64::from(record.samples[1]), first: FIRST, progress: progress as u64 };
+    cuda.in_pieces(wave.context, kernel, work, |piece| {
+        cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..*record })
+    })
+}
+
+/// Room for the counts of a wave's blocks, and the arguments of kernels with it.
+fn counting<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    samples: &DeviceSamples<R>,
+    film: &DeviceFilm<R>,
+) -> Result<(Counts<R>, PixelSamples), RenderError> {
+    let (pool, blocks) = (cuda.pool(), wave.rays.blocks(BLOCK_SIDE) as usize);
+    let counts = [
+        pool.room("counts of shared fragments", blocks + 1)?,
+        pool.room("counts of single samples", blocks + 1)?,
+        pool.room("counts of mirror samples", blocks + 1)?,
+    ];
+    let inner = film.kept_places().map(|place| place as u32);
+    let record = PixelSamples { counts: counts.each_ref().map(Buffer::output), inner, ..samples.record };
+    Ok((counts, record))
+}
+
+/// How many there will be of each list, but for pixels that will be split.
+pub(crate) fn fragment_counts<R: Runtime>(
+    cuda: &Cuda<R>,
+    wave: &DeviceWave<R>,
+    samples: &DeviceSamples<R>,
+    film: &DeviceFilm<R>,
+) -> Result<[usize; 3], RenderError> {
+    let (counts, record) = counting(cuda, wave, samples, film)?;
+    launch(cuda, wave, (COUNT, 0), &record)?;
+    cuda.scan_totals(counts.each_ref())
+}
+
 /// The shared fragments, the single samples and the mirror samples of the pixels that count, with what they see.
 pub(crate) fn fragments<R: Runtime>(
     cuda: &Cuda<R>,
@@ -29,27 +76,14 @@ pub(crate) fn fragments<R: Runtime>(
     all: &Antialiasing,
 ) -> Result<[Fragments<R>; 3], RenderError> {
     let (pool, rays) = (cuda.pool(), wave.rays);
-    let blocks = rays.blocks(BLOCK_SIDE);
-    let launch = |kernel: Kernel, progress: usize, record: PixelSamples| {
-        let work = Work { units: blocks, cost: u64::from(record.samples[1]), first: FIRST, progress: progress as u64 };
-        cuda.in_pieces(wave.context, kernel, work, |piece| {
-            cuda.launch(kernel, blocks_for(&piece, BLOCK), &PixelSamples { first_block: piece.start, ..record })
-        })
-    };
-    let counts = [
-        pool.room("counts of shared fragments", blocks as usize + 1)?,
-        pool.room("counts of single samples", blocks as usize + 1)?,
-        pool.room("counts of mirror samples", blocks as usize + 1)?,
-    ];
-    let mut record = PixelSamples { counts: counts.each_ref().map(Buffer::output), ..samples.record };
-    record.inner = film.kept_places().map(|place| place as u32);
+    let (counts, mut record) = counting(cuda, wave, samples, film)?;
 
     // 1. Which shared pixels are split?
     if !all.apart {
-        launch(CONTRAST, 0, record)?;
+        launch(cuda, wave, (CONTRAST, 0), &record)?;
     }
     // 2. How many fragments does each block have, and where do they begin?
-    launch(COUNT, rays.len(), record)?;
+    launch(cuda, wave, (COUNT, rays.len()), &record)?;
     let totals = cuda.scan_totals(counts.each_ref())?;
     // 3. The fragments.
     let lists = [
@@ -61,7 +95,7 @@ pub(crate) fn fragments<R: Runtime>(
     let hits = [room(totals[0])?, room(totals[1])?, room(totals[2])?];
     record.fragments = lists.each_ref().map(Buffer::output);
     record.fragment_hits = hits.each_ref().map(Buffer::output);
-    launch(EMIT, 0, record)?;
+    launch(cuda, wave, (EMIT, 0), &record)?;
     let sampled = || DeviceSampled {
         hits: samples.hits.clone(),
         first: rays.record.first_pixel,

@@ -13,6 +13,7 @@ use super::lookup::{Links, Place};
 use super::scene::Scene;
 use super::{Gathering, POINTS_AT_ONCE};
 use crate::data::wave::HostWave;
+use crate::progress::Steps;
 use crate::shading::normal_seen;
 use crate::surface::SurfacePoint;
 
@@ -54,8 +55,9 @@ pub(crate) fn gather(wave: &HostWave, how: &Gathering, kept: &mut SurfaceLight) 
         if how.most_kept.is_some_and(|most| kept.memory() > most) {
             *kept = SurfaceLight::default();
         }
-        gather_part(wave, &scene, how, kept, part * POINTS_AT_ONCE, light);
-        wave.context.advance(light.len() as u64);
+        let mut steps = Steps::new(wave.context, light.len());
+        gather_part(wave, &scene, how, kept, (part * POINTS_AT_ONCE, light), &mut steps);
+        steps.end();
     }
     light
 }
@@ -65,8 +67,8 @@ fn gather_part(
     scene: &Scene,
     how: &Gathering,
     kept: &mut SurfaceLight,
-    first: usize,
-    light: &mut [Vec3],
+    (first, light): (usize, &mut [Vec3]),
+    steps: &mut Steps,
 ) {
     // 1. Where light is asked for: at one level, or between two.
     let asks = |index: usize| {
@@ -79,12 +81,17 @@ fn gather_part(
     let normal = |ask: &Ask| normal_seen(wave, first + ask.index);
 
     // 2. to 3. The mean of fine records. Where there is none, the point counts as one itself.
-    let means = if how.brute_force { vec![None; asks.len()] } else { means(scene, how, kept, &asks, normal) };
+    let means = if how.brute_force { vec![None; asks.len()] } else { means(scene, how, kept, (&asks, normal), steps) };
     let misses: Vec<&Ask> = asks.iter().zip(&means).filter(|(_, mean)| mean.is_none()).map(|(ask, _)| ask).collect();
     let records: Vec<Record> = misses.iter().map(|ask| record_of(ask, how.brute_force)).collect();
     let SurfaceLight { coarse_cells, coarse, bounce, .. } = kept;
     let own = if how.brute_force {
-        coarse::plain(scene, bounce, &records, how.rays.coarse)
+        let mut own = Vec::with_capacity(records.len());
+        for part in records.chunks(scene.records_at_once(how.rays.coarse[0])) {
+            own.extend(coarse::plain(scene, bounce, part, how.rays.coarse));
+            steps.tell(own.len(), records.len());
+        }
+        own
     } else {
         fine::plain(scene, &mut CoarseRecords { cells: coarse_cells, known: coarse, bounce }, &records, &how.rays)
     };
@@ -100,15 +107,15 @@ fn means(
     scene: &Scene,
     how: &Gathering,
     kept: &mut SurfaceLight,
-    asks: &[Ask],
-    normal: impl Fn(&Ask) -> Vec3 + Sync,
+    (asks, normal): (&[Ask], impl Fn(&Ask) -> Vec3 + Sync),
+    steps: &mut Steps,
 ) -> Vec<Option<Vec3>> {
     // 2. The fine records around that are seen, and what they receive.
     let places: Vec<Place> = asks.iter().map(|ask| Place::new(&ask.point, ask.level)).collect();
     let SurfaceLight { fine_cells, fine, coarse_cells, coarse, bounce } = kept;
     let mut links = Links::new(scene, fine_cells, &places);
     let mut coarse = CoarseRecords { cells: coarse_cells, known: coarse, bounce };
-    fine::ensure(scene, fine_cells, fine, &mut coarse, &links.records(), &how.rays);
+    fine::ensure(scene, fine_cells, fine, &mut coarse, &links.records(), &how.rays, steps);
     let known = |record: u32| fine[record as usize].as_ref().expect("it was ensured");
     links.settle(scene, fine_cells, &places);
 

@@ -22,6 +22,7 @@ use super::{Gathering, PART_KEPT};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
 use crate::gpu::rays::DeviceWave;
+use crate::progress::Steps;
 use crate::shading::has_reliefs;
 use bounce::DeviceBounce;
 use cells::DeviceCells;
@@ -131,9 +132,10 @@ pub(crate) fn gather<R: Runtime>(
         // In case of an error it is lost: tables may be incomplete.
         let mut tables = light.take(&device, most)?;
         let count = at_once.min(rays - first);
-        gather_part(&device, how, &mut tables, first..first + count, &result)?;
+        let mut steps = Steps::new(wave.context, count);
+        gather_part(&device, how, &mut tables, (first..first + count, &result), &mut steps)?;
         light.tables = Some(tables);
-        wave.context.advance(count as u64);
+        steps.end();
     }
     Ok(DeviceGathered { light: result })
 }
@@ -142,8 +144,8 @@ fn gather_part<R: Runtime>(
     device: &Device<R>,
     how: &Gathering,
     tables: &mut Tables<R>,
-    rays: std::ops::Range<usize>,
-    light: &Buffer<R, Vec3>,
+    (rays, light): (std::ops::Range<usize>, &Buffer<R, Vec3>),
+    steps: &mut Steps,
 ) -> Result<(), RenderError> {
     let Device { cuda, wave, .. } = device;
     let Tables { fine_cells, fine, coarse_cells, coarse, bounce } = tables;
@@ -190,7 +192,7 @@ fn gather_part<R: Runtime>(
         false => {
             let links = fine_cells.links(device, &places)?;
             let new = fine_cells.value(device, &places, &links)?;
-            fine.extend(device, fine_cells, new, &mut coarse)?;
+            fine.extend(device, fine_cells, new, &mut coarse, steps)?;
             fine_cells.settle(device, &places, &links)?;
             Some(links)
         }
@@ -205,10 +207,10 @@ fn gather_part<R: Runtime>(
     };
     let both = GatherPoints { count: places.len() as u32, ..arguments };
     device.threads("mean_light", places.len(), &both)?;
-    let count = read_count(&miss_count)?;
+    let all = read_count(&miss_count)?;
     let at_once = device.at_once(if how.brute_force { how.rays.coarse[0] } else { how.rays.fine });
-    for first in (0..count).step_by(at_once) {
-        let count = at_once.min(count - first);
+    for first in (0..all).step_by(at_once) {
+        let count = at_once.min(all - first);
         let records = cuda.pool().room("surface points that see no record", count)?;
         let asked = cuda.pool().room("these as places that ask", count)?;
         let some = GatherPoints {
@@ -222,6 +224,7 @@ fn gather_part<R: Runtime>(
         if how.brute_force {
             let own = coarse::plain(device, coarse.bounce, records, how.rays.coarse)?;
             device.threads("answer_misses", count, &GatherPoints { coarse: own.input(), ..some })?;
+            steps.tell(first + some.count as usize, all);
         } else {
             let own = fine::plain(device, Asking { records, places: asked }, &mut coarse)?;
             device.threads("answer_misses", count, &GatherPoints { own: own.input(), ..some })?;

@@ -21,6 +21,7 @@ use super::light::Light;
 use super::lookup::{Link, Links, Place};
 use super::rays::Cast;
 use super::scene::Scene;
+use crate::progress::{Steps, spread};
 
 /// What coarse records know.
 pub(super) struct CoarseRecords<'a> {
@@ -37,16 +38,22 @@ pub(super) fn ensure(
     coarse: &mut CoarseRecords,
     wanted: &[u32],
     rays: &RecordRays,
+    steps: &mut Steps,
 ) {
     known.resize_with(cells.records.len(), || None);
-    let new: Vec<u32> = wanted.iter().copied().filter(|&record| known[record as usize].is_none()).collect();
-    for new in new.chunks(scene.records_at_once(rays.fine)) {
+    let all: Vec<u32> = wanted.iter().copied().filter(|&record| known[record as usize].is_none()).collect();
+    let all: Vec<u32> = spread(all.len()).map(|index| all[index]).collect();
+    let mut done = 0;
+    while done < all.len() {
+        let new = &all[done..all.len().min(done + scene.records_at_a_step(rays.fine, done, all.len()))];
         // As coarse as what they ask.
         let coarser = |record: &Record| Record { level: record.level + COARSER, ..*record };
         let records: Vec<Record> = new.iter().map(|&record| coarser(&cells.records[record as usize])).collect();
         for (&number, fine) in new.iter().zip(received(scene, coarse, &records, rays)) {
             known[number as usize] = Some(fine);
         }
+        done += new.len();
+        steps.tell(done, all.len());
     }
 }
 

@@ -44,6 +44,11 @@ pub(crate) use sources::Sources;
 const POINTS_AT_ONCE: usize = 1 << 16;
 /// Rays that are cast at once: the more the better for many processors, unless memory is scarce.
 const RAYS_AT_ONCE: [usize; 2] = [1 << 18, 1 << 16];
+/// Records of an image are computed in steps, the first of which has one of so many, and each at most one of so many:
+const FIRST_STEP: usize = 256;
+const STEPS: usize = 32;
+/// unless that casts fewer rays than this. What they hit asks for many more.
+const RAYS_AT_A_STEP: usize = 1 << 12;
 /// What these take, at most, with all that is known of them: three times, for what they hit asks again.
 const BYTES_OF_RAY: u64 = 3 * 256;
 /// What a point takes.
@@ -110,6 +115,13 @@ impl Gathering {
         // No pixels make a cell: all are of the least level.
         let least_level = how.least_level.max(level_of(BRUTE_FORCE_SIZE * bounds.farthest()).0);
         Gathering { pixels: 0.0, least_level, rays, brute_force: true, ..how }
+    }
+
+    /// What `points` surface points count as in the time that gathering takes, if the first ones of pixels count as one each. What was gathered for
+    /// these serves others, the more the larger cells are; the factor is measured: 0.27 in Sponza and 0.19 in the built-in garden with cells of 6
+    /// pixels, 0.58 in `chess` and 0.53 in `cornell_gltf` with 4.
+    pub(crate) fn pieces(&self, points: f64, new: bool) -> f64 {
+        if new || self.brute_force { points } else { points * f64::from(9.0 / (self.pixels * self.pixels)) }
     }
 
     /// Bytes that it needs on the host, besides the image.

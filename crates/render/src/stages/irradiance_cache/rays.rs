@@ -12,6 +12,7 @@ use super::guide::Guides;
 use super::hemisphere_rays::HemisphereRays;
 use super::lookup::Place;
 use super::scene::Scene;
+use super::{FIRST_STEP, RAYS_AT_A_STEP, STEPS};
 use crate::counters::Tally;
 use crate::data::lights::LightGroup;
 use crate::data::rays::RayList;
@@ -76,6 +77,12 @@ impl Scene<'_> {
     /// The records that rays are cast from at once.
     pub(super) fn records_at_once(&self, hemisphere: HemisphereRays) -> usize {
         self.rays_at_once / hemisphere.len()
+    }
+
+    /// The same of records of an image, `done` of `all`: as many again, so that it soon shows how long all take, but no more than a small part.
+    pub(super) fn records_at_a_step(&self, hemisphere: HemisphereRays, done: usize, all: usize) -> usize {
+        let least = RAYS_AT_A_STEP.div_ceil(hemisphere.len());
+        self.records_at_once(hemisphere).min(done.clamp(all.div_ceil(FIRST_STEP), all.div_ceil(STEPS)).max(least))
     }
 
     /// Casts a hemisphere of rays from each record, as far as it says: even, or as guides have it.

@@ -1,31 +1,76 @@
 use std::sync::Mutex;
+use std::thread;
+use std::time::Duration;
 
-use lightmesh_render::internals::progress::Work;
+use lightmesh_render::internals::progress::{Pieces, Work};
 use lightmesh_render::{Observer, Progress, Stage};
 
-/// Keeps the latest progress.
+/// Keeps all progress.
 #[derive(Default)]
-struct Latest(Mutex<Progress>);
+struct Log(Mutex<Vec<Progress>>);
 
-impl Observer for Latest {
+impl Observer for Log {
     fn progress(&self, progress: Progress) {
-        *self.0.lock().unwrap() = progress;
+        self.0.lock().unwrap().push(progress);
     }
+}
+
+impl Log {
+    fn last(&self) -> Progress {
+        *self.0.lock().unwrap().last().unwrap()
+    }
+}
+
+const TIME: Duration = Duration::from_millis(40);
+
+/// Does a stage that takes so many times [`TIME`].
+fn run(work: &Work, log: &Log, stage: Stage, pieces: f64, times: u32) {
+    work.begin(log, stage, 1, pieces);
+    thread::sleep(times * TIME);
+    work.end(log, stage);
+}
+
+/// Bounds are wide: a busy machine sleeps longer than it is asked to.
+fn assert_about(share: f64, wanted: f64) {
+    assert!((share - wanted).abs() < 0.15, "{share} instead of {wanted}");
+}
+
+#[test]
+fn stages_count_by_their_time() {
+    let (work, log) = (Work::new(), Log::default());
+    work.expect(Pieces::of(Stage::Shade, 10.0).and(Stage::Gather, 1.0));
+    run(&work, &log, Stage::Gather, 1.0, 8);
+    run(&work, &log, Stage::Shade, 5.0, 1);
+    assert_about(log.last().done, 0.9);
+    run(&work, &log, Stage::Shade, 5.0, 1);
+    assert!(work.is_done());
+    assert_eq!((log.last().done, log.last().left), (1.0, Some(0.0)));
 }
 
 #[test]
 fn parts_count_by_their_share_of_the_image() {
-    let (work, latest) = (Work::new(), Latest::default());
-    let mut shares = Vec::new();
-    for (part, pieces) in [([0.0, 0.25], 10), ([0.25, 0.5], 1000), ([0.5, 1.0], 10)] {
+    let (work, log) = (Work::new(), Log::default());
+    for (part, pieces, wanted) in [([0.0, 0.25], 10.0, 0.25), ([0.25, 0.5], 1000.0, 0.5), ([0.5, 1.0], 10.0, 1.0)] {
         work.begin_part(part);
-        work.expect(2 * pieces);
-        for _ in 0..2 {
-            work.begin(&latest, Stage::Shade, pieces, pieces);
-            work.end(&latest, Stage::Shade);
-            shares.push(latest.0.lock().unwrap().done);
-        }
+        work.expect(Pieces::of(Stage::Shade, pieces));
+        run(&work, &log, Stage::Shade, pieces, 2);
+        assert_about(log.last().done, wanted);
     }
-    assert_eq!(shares, [0.125, 0.25, 0.375, 0.5, 0.75, 1.0]);
-    assert_eq!(work.done(), work.total());
+    assert!(work.is_done());
+}
+
+#[test]
+fn a_share_that_was_told_stays_when_more_is_found_to_do() {
+    let (work, log) = (Work::new(), Log::default());
+    let mut guess = Pieces::of(Stage::Shade, 1.0);
+    work.expect(Pieces::of(Stage::Shade, 1.0));
+    work.expect(guess);
+    run(&work, &log, Stage::Shade, 1.0, 2);
+    let before = log.last();
+    work.replace(&mut guess, Pieces::of(Stage::Shade, 20.0));
+    run(&work, &log, Stage::Shade, 1.0, 2);
+    let after = log.last();
+    assert!(after.done >= before.done && after.left.unwrap() > 10.0 * before.left.unwrap(), "{before:?}, {after:?}");
+    run(&work, &log, Stage::Shade, 19.0, 1);
+    assert_eq!(log.last().done, 1.0);
 }

@@ -21,7 +21,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use lightmesh_image::{Description, EncodeError, ExrOptions, Format, Frame, Layers, Output, Ready, SaveOptions};
-use lightmesh_render::{AmbientSource, Observer, PreparedScene, RenderError, Renderer, Settings};
+use lightmesh_render::{AmbientSource, PreparedScene, RenderError, Renderer, Settings};
 use lightmesh_scene::{Light, LightError, Lights, Up};
 use rayon::prelude::*;
 
@@ -32,7 +32,7 @@ use super::{HoursFile, HoursFormat, SunMoment, SunStudy};
 use crate::context::Context;
 use crate::error::{Error, OutputError};
 use crate::files::{publish, ready};
-use crate::host::RENDERING;
+use crate::host::{Host, Part, RENDERING};
 use crate::words::Words;
 
 /// Bytes that layers of suns may take at a time.
@@ -85,7 +85,7 @@ impl SunHours {
         prepared: &PreparedScene,
         (settings, study): (&Settings, &SunStudy),
         suns: &[(Light, f64)],
-        observer: &dyn Observer,
+        host: &dyn Host,
     ) -> Result<SunHours, RenderError> {
         let mut settings =
             settings.clone().with_bounces(0).with_ambient_light(AmbientSource::Constant).with_layers(true);
@@ -98,12 +98,13 @@ impl SunHours {
         let (mut seen, mut hours) = (None, vec![0.0_f64; width * height]);
         // A night is an image, too: what the pixels see.
         let night = suns.is_empty().then_some(suns);
-        for suns in suns.chunks(at_once).chain(night) {
+        let (start, parts) = (Instant::now(), suns.len().div_ceil(at_once).max(1));
+        for (index, suns) in suns.chunks(at_once).chain(night).enumerate() {
+            let part = Part::nth(host, index, parts, start.elapsed().as_secs_f64());
             let dark = |(light, _): &(Light, f64)| light.clone().with_intensity(Vec3::ZERO);
             let lights: Lights = suns.iter().map(dark).collect();
             let lit = prepared.with_lights(lights.with_ambient(Vec3::ZERO));
-            let lightmesh_render::Frame { image: frame, stats } =
-                renderer.render_prepared(&lit, &settings, observer)?;
+            let lightmesh_render::Frame { image: frame, stats } = renderer.render_prepared(&lit, &settings, &part)?;
             // What was chosen holds for all suns, and is told once.
             settings.samples = Some(stats.settings.samples.max(1));
             let Some(layers) = frame.layers() else { continue };

@@ -15,6 +15,7 @@ use super::device::{Device, read_count};
 use super::hemisphere_rays::{DeviceHemisphereRays, Records, taken};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
+use crate::progress::Steps;
 use crate::stages::irradiance_cache::hemisphere_rays::RecordRays;
 
 /// What fine records receive, by the number of its value.
@@ -58,6 +59,7 @@ impl<R: Runtime> DeviceFine<R> {
         cells: &DeviceCells<R>,
         new: Range<usize>,
         coarse: &mut CoarseRecords<R>,
+        steps: &mut Steps,
     ) -> Result<(), RenderError> {
         device.cuda.extend(&mut self.fine, "fine light", new.start, new.end)?;
         let at_once = device.at_once(coarse.rays.fine);
@@ -76,6 +78,7 @@ impl<R: Runtime> DeviceFine<R> {
             };
             let asking = Asking { records: taken(device, from, count)?, places };
             receive(device, asking, coarse, Target { fine: self.fine.output(), first })?;
+            steps.tell(first + count - new.start, new.len());
         }
         Ok(())
     }
