@@ -214,8 +214,8 @@ def add_outputs(command: Command, scene: str, flags: list[str], dice: random.Ran
     count = 1 if not films else int(films[0][-1]) if len(films) == 1 and films[0] in ("--turntable=2", "--turntable=3") else 0
     number, ending = "##" if films else "out", dice.choice(["png", "png", "bmp", "exr", "exr", "jpg"])
     output = dice.choice([f"f.{number}.{ending}"] * 12 + [f"out.{ending}", "f.mp4"] * bool(films))
-    if not films and dice.random() < 0.03:
-        # Onto an input.
+    if not films and scene.startswith("scene.") and dice.random() < 0.04:
+        # Onto an input, one of its own.
         output = scene
     if not films and dice.random() < 0.05:
         command.words += ["-o", "-", f"--format={ending}"]
