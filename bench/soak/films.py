@@ -18,6 +18,8 @@ from process import CODES, Ended, Plan, run, says
 from scenes import good_scene
 
 KILLS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT]
+RENAMED = {"-o": "output", "--layers": "layers_file"}
+"""Flags whose keyword argument in Python has another name."""
 IN_PYTHON = """
 import json, sys, lightmesh
 scene, settings = sys.argv[1], json.loads(sys.argv[2])
@@ -112,18 +114,16 @@ def settings(words: list[str], flags: list[str]) -> dict[str, object]:
     found: dict[str, object] = {}
     rest = iter([*words[2:], *flags])
     for word in rest:
-        name, equals, value = word.removeprefix("--").partition("=")
-        if name == "size":
+        flag, _, value = word.partition("=")
+        name = RENAMED.get(flag, flag.removeprefix("--").replace("-", "_"))
+        if flag in ("-o", "--layers", "--stats", "--device"):
+            value = next(rest)
+        if flag == "--size":
             found[name] = [int(side) for side in value.split("x")]
-        elif name in ("turntable", "fps"):
+        elif flag in ("--turntable", "--fps"):
             found[name] = int(value)
-        elif equals:
-            found[name] = value
-        elif name in ("-o", "layers", "stats", "device"):
-            path = next(rest)
-            found |= {} if name == "device" else {{"-o": "output", "layers": "layers_file"}.get(name, name): path}
-        else:
-            found[name.replace("-", "_")] = True
+        elif flag != "--device":
+            found[name] = value or True
     return found
 
 

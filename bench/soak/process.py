@@ -41,10 +41,13 @@ class Ended:
     """How a run ended."""
 
     words: Sequence[str]
+    """The command."""
+    folder: Path
     code: int
     out: bytes
     err: bytes
     kill: signal.Signals | None
+    stdin: Path | None = None
 
 
 def run(
@@ -61,14 +64,14 @@ def run(
     """Runs the program, or `program`, in `folder`, with `words`, and sends the signal `kill` `after` seconds if it is still there."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("LIGHTMESH_")} | {"TMPDIR": str(folder)}
     with open(stdin or os.devnull, "rb") as source:
+        command = [*(program or [str(plan.program)]), *words]
         process = subprocess.Popen(
-            [*(program or [str(plan.program)]), *words],
-            cwd=folder, env=environment, stdin=source, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=before,
+            command, cwd=folder, env=environment, stdin=source, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=before,
         )  # fmt: skip
         if kill:
             try:
                 out, err = process.communicate(timeout=after)
-                return Ended(words, process.returncode, out, err, None)
+                return Ended(command, folder, process.returncode, out, err, None, stdin)
             except subprocess.TimeoutExpired:
                 process.send_signal(kill)
         try:
@@ -78,7 +81,7 @@ def run(
             process.kill()
             out, err = process.communicate()
             code = TOO_SLOW
-    return Ended(words, code, out, err, kill)
+    return Ended(command, folder, code, out, err, kill, stdin)
 
 
 def says(ended: Ended) -> list[str]:
@@ -92,6 +95,8 @@ def says(ended: Ended) -> list[str]:
     return found
 
 
-def shown(program: Path, folder: Path, words: Sequence[str]) -> str:
-    """A command for a shell."""
-    return f"cd {shlex.quote(str(folder))} && {shlex.join([str(program), *words])}"
+def shown(ended: Ended) -> str:
+    """The command for a shell, and the signal that it got."""
+    source = f" < {shlex.quote(str(ended.stdin))}" if ended.stdin else ""
+    kill = f"   # {ended.kill.name}" if ended.kill else ""
+    return f"cd {shlex.quote(str(ended.folder))} && {shlex.join(ended.words)}{source}{kill}"

@@ -127,7 +127,8 @@ def gltf_text(triangles: Triangles, dice: random.Random) -> str:
     nodes: list[dict[str, object]] = [{"mesh": 0, "translation": [3 * i, 0, 0], "scale": [dice.choice([1, 1, -1, 0.2, 0])] * 3} for i in places]
     nodes += [{"extensions": {"KHR_lights_punctual": {"light": i}}, "translation": [1, 4, i]} for i in range(3)]
     nodes += [{"camera": 0, "translation": [0, 1, 8]}] if dice.random() < 0.7 else []
-    lights: list[dict[str, object]] = [{"type": kind, "intensity": dice.choice([0, 1, 100, 1e30]), "spot": {}} for kind in ("point", "spot", "directional")]
+    kinds = ["point", "spot", "directional"]
+    lights: list[dict[str, object]] = [{"type": kind, "intensity": dice.choice([0, 1, 100, 1e30]), "spot": {}} for kind in kinds]
     metal = {"metallicFactor": dice.choice([0, 1]), "roughnessFactor": dice.random()}
     material = {"pbrMetallicRoughness": metal, "emissiveFactor": [dice.choice([0, 0, 1])] * 3}
     uri = "data:application/octet-stream;base64,"

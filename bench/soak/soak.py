@@ -72,12 +72,12 @@ def soak(plan: Plan, part: str, chosen: argparse.Namespace, folder: Path) -> int
             found, ended = once(plan, place, random.Random(f"{part} {seed}"))
         except Exception as error:
             # One run that goes wrong in here must not end all others.
-            found, ended = [f"this script fails: {error!r}"], Ended([], 0, b"", b"", None)
+            found, ended = [f"this script fails: {error!r}"], Ended([], place, 0, b"", b"", None)
         if ended.code == TOO_SLOW:
             found.append(f"takes longer than {plan.limit} s")
         if not found:
             shutil.rmtree(place)
-        return found, str(ended.code), shown(plan.program, place, ended.words)
+        return found, str(ended.code), shown(ended)
 
     seeds = range(chosen.seed, chosen.seed + (chosen.runs or count))
     with ThreadPoolExecutor(chosen.jobs) as pool:

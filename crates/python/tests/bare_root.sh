@@ -26,10 +26,10 @@ cp "$executable" "$root$executable"
 tar -C "$library" --exclude ./site-packages --exclude ./dist-packages --exclude ./test --exclude __pycache__ -c . | tar -C "$root$library" -x
 cp -r "${paths[3]}" "$root$packages"
 
-# 2. Libraries that it needs, and the two that manylinux promises.
+# 2. Libraries that it needs, and those that manylinux promises: all parts of libc, and what compilers add.
 linked() {
     { ldd "$executable"; find "$root$library" -name '*.so' -exec ldd {} +; } | grep -o '/[^ ]*\.so[^ ]*' | grep -v "^$root" | sed 's/:$//'
-    ldconfig -p | grep -E 'lib(gcc_s|stdc\+\+)\.so' | grep -o '/.*'
+    ldconfig -p | grep -E 'lib(c|m|dl|rt|util|pthread|gcc_s|stdc\+\+)\.so' | grep -o '/.*'
 }
 linked | sort -u | while read -r path; do
     mkdir -p "$root$(dirname "$path")"
