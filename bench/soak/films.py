@@ -65,16 +65,15 @@ def disks(plan: Plan, folder: Path, dice: random.Random) -> tuple[list[str], End
     words, undisturbed, _, ended = make_film(plan, folder, dice, film=film)
     if ended.code != 0:
         return [f"with room it ends with {ended.code}: {ended.err[-300:]!r}"], ended
-    total = sum(path.stat().st_size for path in undisturbed.iterdir())
-    with Disk(folder / "disk", 2 * total + (4 << 20)) as disk:
+    sizes = [path.stat().st_size for path in undisturbed.iterdir()]
+    with Disk(folder / "disk", 2 * sum(sizes) + (4 << 20)) as disk:
         place = copy_scene(folder, "disk/full")
-        room = dice.randrange(total + 1)
-        ended = run(plan, words, place, before=disk.fill(room))
-        found = says(ended)
-        if ended.code not in {0, 2, 3, 4} or (ended.code and not film and ended.code == 4):
-            found.append(f"exit code {ended.code}: {ended.err[-300:]!r}")
-        if film or ended.code == 0:
-            found += differences(undisturbed, place, whole=ended.code == 0)
+        full = run(plan, words, place, before=disk.fill(dice.random(), sizes))
+        found = says(full)
+        if full.code not in {0, 2, 3} | ({4} if film else set()):
+            found.append(f"exit code {full.code}: {full.err[-300:]!r}")
+        if film or full.code == 0:
+            found += differences(undisturbed, place, whole=full.code == 0)
         else:
             # Files of one run appear together.
             found += [f"{path.name} is there, and others are not" for path in sorted(place.iterdir()) if not path.name.startswith("scene.")]
@@ -83,7 +82,7 @@ def disks(plan: Plan, folder: Path, dice: random.Random) -> tuple[list[str], End
         if ended.code != 0:
             found.append(f"with room again it ends with {ended.code}: {ended.err[-300:]!r}")
         found += differences(undisturbed, place, whole=True)
-    return found, ended
+    return found, full
 
 
 # ---- Films ----
@@ -181,10 +180,12 @@ class Disk:
             shutil.copytree(kept, self.place, dirs_exist_ok=True)
             shutil.rmtree(kept)
 
-    def fill(self, room: int) -> Callable[[], None] | None:
-        """Leaves room for so many bytes; what is to be called in the process that writes, if that is how."""
+    def fill(self, share: float, sizes: list[int]) -> Callable[[], None] | None:
+        """Leaves room for a share of files of these sizes; what is to be called in the process that writes, if that is how."""
         if not self.mounted:
+            room = int(share * max(sizes))
             return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, resource.RLIM_INFINITY))
+        room = int(share * sum(sizes))
         found = os.statvfs(self.place)
         with open(self.place / "filler", "wb") as file:
             os.posix_fallocate(file.fileno(), 0, max(1, found.f_bavail * found.f_frsize - room))
