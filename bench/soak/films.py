@@ -10,7 +10,7 @@ import shutil
 import signal
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from pathlib import Path
 
 from files import NotWholeError, check
@@ -37,6 +37,7 @@ def kills(plan: Plan, folder: Path, dice: random.Random) -> tuple[list[str], End
     in_python = plan.python is not None and dice.random() < 0.5
     go_on = "--skip-existing" if dice.random() < 0.25 else "--resume"
     found: list[str] = []
+    spared: set[str] = set()
     for turn in range(20):
         kill = dice.choice(KILLS) if turn < dice.randrange(1, 7) else None
         flags = [go_on] * (turn > 0)
@@ -51,9 +52,11 @@ def kills(plan: Plan, folder: Path, dice: random.Random) -> tuple[list[str], End
         allowed = {0} | CODES.get(ended.kill, set()) | ({1} if in_python and ended.kill == signal.SIGINT else set())
         if ended.code not in allowed:
             return [*found, f"exit code {ended.code} after {ended.kill!r}: {ended.err[-300:]!r}"], ended
-        # After SIGKILL the next run removes temporary files.
+        # After SIGKILL the next run that comes so far removes temporary files.
+        if ended.code == -signal.SIGKILL:
+            spared |= {path.name for path in place.glob(".lightmesh-*")}
         kept = go_on == "--skip-existing" and turn > 0
-        found += differences(undisturbed, place, whole=ended.code == 0, leftovers=ended.code == -signal.SIGKILL, kept=kept)
+        found += differences(undisturbed, place, whole=ended.code == 0, spared=set() if ended.code == 0 else spared, kept=kept)
         if ended.code == 0 or found:
             break
     return found, ended
@@ -135,13 +138,13 @@ def copy_scene(folder: Path, name: str) -> Path:
     return place
 
 
-def differences(undisturbed: Path, place: Path, *, whole: bool, leftovers: bool = False, kept: bool = False) -> list[str]:
+def differences(undisturbed: Path, place: Path, *, whole: bool, spared: Set[str] = frozenset(), kept: bool = False) -> list[str]:
     """What of `place` is not of the undisturbed film, and what is missing if it is to be `whole`. The manifest does not answer for frames that
     were `kept` without a look at them, nor for what has times."""
     wanted = {path.name: path.read_bytes() for path in undisturbed.iterdir()}
     there = {path.name: path.read_bytes() for path in place.iterdir()}
     found = [f"{name} is missing" for name in sorted(wanted.keys() - there.keys())] if whole else []
-    if not leftovers and (left := sorted(there.keys() - wanted.keys())):
+    if left := sorted(there.keys() - wanted.keys() - spared):
         found.append(f"left behind: {left}")
     has_times = any(name.startswith("s.") and name.endswith(".json") for name in wanted)
     for name in sorted(wanted.keys() & there.keys()):
