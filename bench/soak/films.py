@@ -52,8 +52,8 @@ def kills(plan: Plan, folder: Path, dice: random.Random) -> tuple[list[str], End
         allowed = {0} | CODES.get(ended.kill, set()) | ({1} if in_python and ended.kill == signal.SIGINT else set())
         if ended.code not in allowed:
             return [*found, f"exit code {ended.code} after {ended.kill!r}: {ended.err[-300:]!r}"], ended
-        # After SIGKILL the next run that comes so far removes temporary files.
-        if ended.code == -signal.SIGKILL:
+        # The next run that comes so far removes temporary files after SIGKILL, and after SIGTERM, for which Python does not listen.
+        if ended.code == -signal.SIGKILL or (in_python and ended.code < 0):
             spared |= {path.name for path in place.glob(".lightmesh-*")}
         kept = go_on == "--skip-existing" and turn > 0
         found += differences(undisturbed, place, whole=ended.code == 0, spared=set() if ended.code == 0 else spared, kept=kept)
