@@ -60,9 +60,17 @@ _python:
     python3 -m venv target/python
     target/python/bin/python -m pip install --quiet --disable-pip-version-check ./crates/python
 
-# The wheel of the Python package, in target/wheels; needs maturin
-wheel *flags="--release":
-    maturin build --locked --manifest-path crates/python/Cargo.toml --out target/wheels {{flags}}
+# The wheel of the Python package as released, in target/packages
+wheel:
+    .ci/package wheel
+
+# What a release has for this system: wheel, Blender extension and program, in target/packages
+package:
+    .ci/package
+
+# Install that wheel in a root with Python alone, and render a picture there
+bare-root wheel="target/packages/*.whl":
+    crates/python/tests/bare_root.sh {{wheel}}
 
 # Build the Python package, and test it
 python-test *flags: _python
@@ -74,16 +82,16 @@ notebooks *files="notebooks/*.ipynb book/src/python.md": _python
     target/python/bin/python -m pip install --quiet --disable-pip-version-check --requirement .ci/python.txt
     target/python/bin/python notebooks/run.py {{files}}
 
-# The Blender add-on as an extension, in target/blender, with the wheels that are named
-addon *wheels="target/wheels/*.whl":
-    python3 blender/build.py --out target/blender $(printf -- '--wheel %s ' {{wheels}})
+# The Blender add-on as an extension with its wheel, in target/packages
+addon:
+    .ci/package extension
 
 # Test the Blender add-on in Blender as a Python module, which needs Python 3.11; the version is 4.5 or 5.0
-addon-test version="4.5" wheel="target/wheels/*.whl":
+addon-test version="4.5" wheel="target/packages/*.whl":
     python3.11 -m venv target/blender-{{version}}
     target/blender-{{version}}/bin/python -m pip install --quiet --disable-pip-version-check --requirement .ci/blender-{{version}}.txt
     target/blender-{{version}}/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall {{wheel}}
-    target/blender-{{version}}/bin/python -m pytest blender/tests
+    LIGHTMESH_WHEEL=$(echo {{justfile_directory()}}/{{wheel}}) target/blender-{{version}}/bin/python -m pytest blender/tests
 
 # Package the crates and show the order in which they are published; uploads nothing. Without --no-verify each is built from its package
 publish-order *flags="--no-verify":

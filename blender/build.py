@@ -153,6 +153,11 @@ def with_wheels(manifest: str, wheels: Sequence[Path]) -> str:
     return f"{manifest.rstrip()}\nplatforms = [{names}]\nwheels = [\n{listed}]\n"
 
 
+def suffix(platforms: Sequence[str]) -> str:
+    """The end of the zip file's name: that of its platform, as Blender itself names such files, if there is one alone."""
+    return f"-{platforms[0].replace('-', '_')}" if len(platforms) == 1 else ""
+
+
 def checked_wheels(paths: Sequence[Path]) -> list[Path]:
     """The wheels, if they are of the package."""
     for path in paths:
@@ -179,7 +184,7 @@ def build(wheels: Sequence[Path], out: Path) -> Path:
     if found := problems(manifest, list(contents)):
         raise BuildError(f"the manifest {ADDON / MANIFEST} breaks rules:\n" + "\n".join(f"  {problem}" for problem in found))
     out.mkdir(parents=True, exist_ok=True)
-    path = out / f"{manifest['id']}-{manifest['version']}.zip"
+    path = out / f"{manifest['id']}-{manifest['version']}{suffix(manifest['platforms'])}.zip"
     with zipfile.ZipFile(path, "w") as archive:
         for name, data in sorted(contents.items()):
             entry = zipfile.ZipInfo(name)

@@ -71,6 +71,7 @@ def test_build(wheel: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     """One command makes the zip file; Blender takes it, and it has all sources and the wheel."""
     assert build.main(["--wheel", str(wheel), "--out", str(tmp_path / "dist")]) == 0
     path = Path(capsys.readouterr().out.strip())
+    assert path.name == "lightmesh-0.1.0-linux_x64.zip"
     with zipfile.ZipFile(path) as archive:
         names = set(archive.namelist())
         assert f"wheels/{WHEEL}" in names and "blender_manifest.toml" in names
@@ -118,7 +119,9 @@ def test_two_wheels_for_a_platform() -> None:
 def test_wheels_of_all_platforms() -> None:
     names = ["manylinux_2_28_x86_64", "macosx_11_0_universal2", "win_amd64", "manylinux_2_28_aarch64"]
     text = build.with_wheels("", [Path(f"lightmesh-0.1.0-cp310-abi3-{name}.whl") for name in names])
-    assert tomllib.loads(text)["platforms"] == ["linux-arm64", "linux-x64", "macos-arm64", "macos-x64", "windows-x64"]
+    platforms = tomllib.loads(text)["platforms"]
+    assert platforms == ["linux-arm64", "linux-x64", "macos-arm64", "macos-x64", "windows-x64"]
+    assert build.suffix(platforms) == ""
 
 
 def ended_well(result: subprocess.CompletedProcess[str]) -> bool:
