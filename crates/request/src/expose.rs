@@ -114,19 +114,29 @@ impl Metering {
         // An automatic exposure is that of the whole image.
         let mut settings = settings.clone();
         let crop = settings.crop.take_if(|_| self.is_automatic());
+        // What lies around the image is not in it.
+        let around = crop.filter(|crop| !crop.is_within(settings.size));
         settings.transparent |= self.is_apart();
         let mut frame = render(prepared, &settings)?;
         let stops = self.stops(&frame, host);
-        if let Some(background) = self.background(stops) {
-            if self.is_reflected(&prepared.scene, &settings) && !host.cancelled() {
-                settings.transparent = false;
-                let lights = prepared.scene.lights.clone().with_background(background);
-                frame = render(&prepared.with_lights(lights), &settings)?;
-            } else {
+        settings.crop = settings.crop.or(around);
+        let background = self.background(stops);
+        if let Some(background) = background
+            && self.is_reflected(&prepared.scene, &settings)
+            && !host.cancelled()
+        {
+            settings.transparent = false;
+            let lights = prepared.scene.lights.clone().with_background(background);
+            frame = render(&prepared.with_lights(lights), &settings)?;
+        } else {
+            if around.is_some() {
+                frame = render(prepared, &settings)?;
+            }
+            if let Some(background) = background {
                 frame = self.put_behind(frame, background);
             }
         }
-        if let Some(crop) = crop {
+        if let Some(crop) = crop.filter(|_| around.is_none()) {
             frame = frame.cropped(crop).expect("settings were checked: the crop is in the image");
         }
         Ok((frame, stops))
