@@ -52,12 +52,13 @@ def test_cameras_see_between_their_planes(renderer, scene):
     whole = renderer.render(scene, **settings)
     depth = np.where(np.isfinite(whole.depth), (whole.position - at) @ along, np.inf)
     near, far = np.quantile(depth[np.isfinite(depth)], [0.3, 0.7])
-    part = renderer.render(scene.with_camera(lightmesh.Camera(at, direction=along, near=near, far=far)), **settings)
+    scene.cameras = [lightmesh.Camera(at, direction=along, near=near, far=far)]
+    part = renderer.render(scene, **settings)
     seen = (part.position - at) @ along
     assert near - 1e-3 <= seen[np.isfinite(part.depth)].min() and seen[np.isfinite(part.depth)].max() <= far + 1e-3
     between = (depth > near + 1e-3) & (depth < far - 1e-3)
     assert between.mean() > 0.1 and np.allclose(part.depth[between], whole.depth[between], rtol=1e-4)
-    camera_stats = part.stats["camera"]
+    camera_stats = part.stats["settings"]["camera"]
     assert camera_stats["near"] == pytest.approx(near) and camera_stats["far"] == pytest.approx(far)
 
 
