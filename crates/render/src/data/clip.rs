@@ -69,6 +69,7 @@ impl Limits {
 
     /// What that hits, as a hit of the ray itself.
     #[inline(always)]
+    #[allow(clippy::wrong_self_convention, reason = "the hit counts from the ray's origin; the twin's name")]
     pub(crate) fn from_origin(&self, hit: Hit) -> Hit {
         Hit { t: hit.t + self.start, ..hit }
     }

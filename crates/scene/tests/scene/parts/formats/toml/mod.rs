@@ -300,7 +300,7 @@ fn a_mirrored_mesh_keeps_its_front() {
 
 /// Text with one mistake, and the expected message. Each names the line and a remedy after the semicolon.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str); 40] = [
+const MISTAKES: [(&str, &str); 44] = [
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not positive, room.toml:3; give a radius above 0"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = nan", "radius = nan is not finite, room.toml:3; "),
     ("[[sphere]]\ncenter = [0, inf, 0]\nradius = 1", "center = [0, inf, 0] is not finite, room.toml:2; "),
