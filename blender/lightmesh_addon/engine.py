@@ -81,7 +81,7 @@ class LightmeshEngine(bpy.types.RenderEngine):
         view, framing = camera.of_scene(depsgraph, self.camera_override)
         exported = Exporter(depsgraph, notes).run(self._stop_if_asked)
         wanted = passes.wanted(view_layer, exported.light_names)
-        camera.warn_of(depsgraph, exported, notes, self.camera_override)
+        camera.warn_of(depsgraph, notes, self.camera_override)
         chosen = {**settings.of_scene(scene), **exported.settings, **framing, "layers": bool(wanted) or exported.has_holdouts}
 
         # 2. The image. What the next frame can use is kept.
@@ -94,7 +94,7 @@ class LightmeshEngine(bpy.types.RenderEngine):
 
         # 3. Its passes.
         looking = (self.camera_override or scene.camera).evaluated_get(depsgraph)
-        layers = passes.Layers(frame, exported, view, camera.start(looking.data))
+        layers = passes.Layers(frame, exported, view)
         self._write(frame, layers, wanted, view_layer, camera.is_mirrored(looking))
         self.update_stats("", f"Lightmesh: {renderer.device}")
 

@@ -102,9 +102,8 @@ def share(mattes: lightmesh.Mattes, names: set[str]) -> np.ndarray:
 class Layers:
     """The passes of one frame."""
 
-    def __init__(self, frame: lightmesh.Frame, exported: Exported, camera: lightmesh.Camera, start: float = 0.0) -> None:
-        """`start`: how far before Blender's camera this one is."""
-        self.frame, self.exported, self.camera, self.start = frame, exported, camera, start
+    def __init__(self, frame: lightmesh.Frame, exported: Exported, camera: lightmesh.Camera) -> None:
+        self.frame, self.exported, self.camera = frame, exported, camera
         self._mattes = {}
 
     def of(self, wanted: Pass) -> np.ndarray:
@@ -128,7 +127,7 @@ class Layers:
     def depth(self) -> np.ndarray:
         """Distances along the view axis, not along rays: Blender's Z."""
         away = self.frame.position - np.array(self.camera.position, np.float32)
-        depth = away @ np.array(self.camera.direction, np.float32) + self.start
+        depth = away @ np.array(self.camera.direction, np.float32)
         return np.where(np.isfinite(self.frame.depth), depth, FAR)
 
     def _matte(self, kind: str, level: int) -> np.ndarray:

@@ -57,7 +57,7 @@ def study(depsgraph: bpy.types.Depsgraph, notes: Notes) -> Study:
     exported = Exporter(depsgraph, notes, sky=sky(sun)).run()
     if exported.has_holdouts:
         notes.add("Holdouts are black in a study: render without it to have holes in their place")
-    camera.warn_of(depsgraph, exported, notes)
+    camera.warn_of(depsgraph, notes)
     if camera.is_mirrored(depsgraph.scene.camera.evaluated_get(depsgraph)):
         notes.add(f"Camera “{depsgraph.scene.camera.name}” is mirrored by a negative scale: flip the images of a study, left to right")
     made = exported.scene(view)

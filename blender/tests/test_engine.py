@@ -233,6 +233,12 @@ def test_panoramic_camera() -> None:
     assert "Camera “Camera” is panoramic" in failing_render()
 
 
+def test_clip_planes_without_space() -> None:
+    stage()
+    bpy.context.scene.camera.data.clip_start, bpy.context.scene.camera.data.clip_end = 9.0, 8.0
+    assert "Camera “Camera” sees nothing" in failing_render()
+
+
 def test_no_camera() -> None:
     stage()
     bpy.context.scene.camera = None

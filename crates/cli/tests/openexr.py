@@ -211,6 +211,16 @@ def check_crop(render, whole):
         assert (plane.view(np.uint32) == np.ascontiguousarray(whole.planes[name][7:18, 5:25]).view(np.uint32)).all(), name
 
 
+def check_overscan(render, whole):
+    layers = render("overscan", "--aa", "6", "--bounces", "2", "--crop", f"-3,-2,{SIZE[0] + 8},{SIZE[1] + 4}")
+    header = layers.parts[0].header
+    data, display = [[tuple(int(value) for value in corner) for corner in header[name]] for name in ["dataWindow", "displayWindow"]]
+    assert (data, display) == ([(-3, -2), (SIZE[0] + 4, SIZE[1] + 1)], [(0, 0), (SIZE[0] - 1, SIZE[1] - 1)]), (data, display)
+    for name, plane in layers.planes.items():
+        own = np.ascontiguousarray(plane[2 : 2 + SIZE[1], 3 : 3 + SIZE[0]])
+        assert (own.view(np.uint32) == np.ascontiguousarray(whole.planes[name]).view(np.uint32)).all(), name
+
+
 def check_parts(render, single):
     parts = render("multi", "--aa", "6", "--bounces", "2", "--exr-parts", "multi")
     assert [part.name() for part in parts.parts] == PARTS, [part.name() for part in parts.parts]
@@ -248,6 +258,7 @@ def main():
         check_halves(render)
         single = Layers(folder / "single6.exr")
         check_crop(render, single)
+        check_overscan(render, single)
         check_parts(render, single)
         check_attributes(single)
         render("again", "--aa", "6", "--bounces", "2")

@@ -23,12 +23,12 @@ pub struct Frame {
     layers: Option<Layers>,
 }
 
-/// Where a frame lies in an image that it is a part of.
+/// Where a frame lies in an image that it is a part of, or around one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Window {
-    /// Column and row of its first pixel.
-    pub first: [u32; 2],
+    /// Column and row of its first pixel; negative to the left of the image and above.
+    pub first: [i32; 2],
     /// Width and height of the image in pixels.
     pub whole: [u32; 2],
 }
@@ -114,10 +114,10 @@ impl Frame {
         Ok(Self { width, height, window, color, alpha: None, layers: None })
     }
 
-    /// The same frame as the part of an image of `whole` pixels whose first pixel is in column and row `first`. An exr file says so;
-    /// dithering depends on it.
+    /// The same frame as the part of an image of `whole` pixels whose first pixel is in column and row `first`; it may extend beyond the image.
+    /// An exr file says so; dithering depends on it.
     #[must_use]
-    pub fn with_window(self, first: [u32; 2], whole: [u32; 2]) -> Self {
+    pub fn with_window(self, first: [i32; 2], whole: [u32; 2]) -> Self {
         Self { window: Window { first, whole }, ..self }
     }
 
@@ -128,11 +128,11 @@ impl Frame {
 
     /// The part of `size` pixels from column and row `first` of the whole image on, with alpha and layers; `None` if the frame does not have
     /// all of it, or it has no pixel.
-    pub fn cropped(&self, first: [u32; 2], size: [u32; 2]) -> Option<Self> {
+    pub fn cropped(&self, first: [i32; 2], size: [u32; 2]) -> Option<Self> {
         let Window { first: start, whole } = self.window;
         let own = [self.width, self.height];
         let within = |axis: usize| {
-            let offset = first[axis].checked_sub(start[axis])?;
+            let offset = u32::try_from(i64::from(first[axis]) - i64::from(start[axis])).ok()?;
             (size[axis] > 0 && u64::from(offset) + u64::from(size[axis]) <= u64::from(own[axis])).then_some(offset)
         };
         let corner = [within(0)?, within(1)?].map(|offset| offset as usize);

@@ -56,6 +56,10 @@ constants! {
     CONTRAST_FLOOR: f32 = 0.2;
     /// Rows above and below a band with which its pixels are compared.
     MARGIN_ROWS: u32 = 1;
+    /// Pixels outside of the image are numbered by rows of 2 to this power,
+    OUTSIDE_BITS: u32 = 16;
+    /// with this number where the image begins: those of the image are smaller.
+    OUTSIDE: u32 = 1 << 31;
     /// Values per thread of a prefix sum.
     VALUES_OF_THREAD: u32 = 4;
 

@@ -227,12 +227,20 @@ records! {
         right: Vec3,
         /// One pixel down.
         down: Vec3,
+        /// Unit vector along which depths are measured, from the origin on.
+        axis: Vec3,
         /// Width and height of the window that is rendered, in pixels.
         size: [u32; 2],
-        /// Column and row of its first pixel in the image.
-        first: [u32; 2],
+        /// Column and row of its first pixel in the image; negative to the left of it and above.
+        first: [i32; 2],
         /// Width and height of the image.
         whole: [u32; 2],
+        /// The depth from which on surfaces are seen.
+        near: f32,
+        /// The depth up to which they are seen.
+        far: f32,
+        /// 1 if some depths are not seen.
+        clips: u32,
         /// 1 for perspective, 0 for orthographic.
         perspective: u32,
         /// Padding to a multiple of eight bytes.

@@ -17,7 +17,8 @@ const USUAL_VFOV: f32 = 45.0;
 /// A camera at `position` that looks at `target`, or along `direction`. `vfov` or `hfov` is the full vertical or horizontal field of view,
 /// degrees (45° vertical if none is given); `height` in their place makes it orthographic: the image is as high in scene units. `shift` moves
 /// the image, to the right and up, by shares of its height, as a shifted lens does: parallels stay parallel. `up` is what is up in the image, and
-/// `name` what `camera_name` calls it.
+/// `name` what `camera_name` calls it. Surfaces and lights are seen from the depth `near` up to the depth `far`, distances along the view
+/// direction in scene units; shadows, mirrors and the sky stay.
 #[pyclass(frozen, from_py_object, module = "lightmesh")]
 #[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Camera {
@@ -45,10 +46,10 @@ impl Camera {
     #[pyo3(
         signature = (
             position, target = None, *, direction = None, up = None, vfov = None, hfov = None, height = None,
-            shift = Given((Single(0.0), Single(0.0))), name = Given(String::new())
+            shift = Given((Single(0.0), Single(0.0))), name = Given(String::new()), near = Single(0.0), far = None
         ),
         text_signature = "(position, target=None, *, direction=None, up=(0.0, 1.0, 0.0), vfov=None, hfov=None, height=None, shift=(0.0, 0.0), \
-            name='')"
+            name='', near=0.0, far=None)"
     )]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
@@ -61,6 +62,8 @@ impl Camera {
         height: Option<Single>,
         shift: Given<(Single, Single)>,
         name: Given<String>,
+        near: Single,
+        far: Option<Single>,
     ) -> PyResult<Camera> {
         let position = position.0;
         let [vfov, hfov, height] = [vfov, hfov, height].map(|number| number.map(|Single(number)| number));
@@ -85,6 +88,8 @@ impl Camera {
         let up = up.map_or(DVec3::Y, |up| up.0);
         let camera = scene::Camera::look_to(Vec3::ZERO, direction, up, angle).or_raise()?;
         let camera = camera.with_projection(projection).with_shift([right, above]).named(name.0);
+        let (Single(near), far) = (near, far.map_or(f32::INFINITY, |Single(far)| far));
+        let camera = camera.with_clip(near, far).or_raise()?;
         Ok(Camera { camera, position })
     }
 

@@ -259,7 +259,7 @@ def test_copies_of_parts():
     texture = Texture(np.zeros((2, 3, 3), np.uint8), name="t")
     parts = [
         *all_lights(),
-        Camera((1, 2, 3), (0, 0, 0), hfov=40.0, shift=(0.1, 0.2), name="c"),
+        Camera((1, 2, 3), (0, 0, 0), hfov=40.0, shift=(0.1, 0.2), name="c", near=0.5, far=8.0),
         Camera((1, 2, 3), direction=(0, 0, 1), height=2.0),
         texture,
         Material((0.1, 0.2, 0.3), texture=texture, name="m"),

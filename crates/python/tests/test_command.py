@@ -54,6 +54,7 @@ def test_entry_point_is_installed():
         {"lookup": "half-ball", "step": 40.0},
         {"ground": True, "up": "y", "background": (0.1, 0.2, 0.3)},
         {"exposure": "auto", "crop": (10, 10, 40, 30)},
+        {"exposure": "auto", "crop": (-9, -5, 40, 30)},
         {"sky": "uniform", "samples": 16},
     ],
     ids=lambda flags: "+".join(flags) or "none",

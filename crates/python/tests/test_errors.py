@@ -241,6 +241,18 @@ def test_vectors_are_finite(argument):
     refused(Camera, arguments, argument, value)
 
 
+@pytest.mark.parametrize("clip", [{"near": -1.0}, {"near": 2.0, "far": 2.0}, {"far": 0.0}, {"far": -3.0}], ids=str)
+def test_clip_planes_have_space_between_them(clip):
+    with pytest.raises(lightmesh.LightmeshError, match="between the depths"):
+        Camera((0, 0, 0), (0, 0, 1), **clip)
+
+
+@pytest.mark.parametrize("crop", [(-70_000, 0, 8, 6), (0, 0, 70_000, 6), (0, 0, 0, 6), (0, 0, 8, -6), (1, 2, 3)], ids=str)
+def test_crops_are_near_the_image(renderer, scene, crop):
+    with pytest.raises(lightmesh.LightmeshError, match="crop"):
+        renderer.render(scene, size=(8, 6), crop=crop)
+
+
 def test_a_note_is_a_note():
     error = lightmesh.SettingError("text")
     error.add_note("while processing 'size'")

@@ -7,7 +7,7 @@ import tempfile
 
 import numpy as np
 import pytest
-from conftest import SIZE
+from conftest import SIZE, camera
 
 import lightmesh
 
@@ -34,6 +34,32 @@ def test_shapes_and_kinds(frame):
         (frame.ids.nearest, (HEIGHT, WIDTH), np.uint32),
     ):
         assert array.shape == shape and array.dtype == kind
+
+
+def test_overscan_is_around_the_image(renderer, scene):
+    settings = {"size": SIZE, "quality": "draft", "layers": True}
+    own = renderer.render(scene, **settings)
+    around = renderer.render(scene, crop=(-7, -5, WIDTH + 11, HEIGHT + 9), **settings)
+    assert around.size == (WIDTH + 11, HEIGHT + 9) and around.stats["settings"]["crop"] == [-7, -5, WIDTH + 11, HEIGHT + 9]
+    inside = slice(5, 5 + HEIGHT), slice(7, 7 + WIDTH)
+    for name in ("rgb", "depth", "normal"):
+        assert np.array_equal(getattr(around, name)[inside], getattr(own, name)), name
+
+
+def test_cameras_see_between_their_planes(renderer, scene):
+    settings = {"size": SIZE, "aa": 1, "layers": True}
+    at, along = np.array(camera().position), np.array(camera().direction)
+    whole = renderer.render(scene, **settings)
+    depth = np.where(np.isfinite(whole.depth), (whole.position - at) @ along, np.inf)
+    near, far = np.quantile(depth[np.isfinite(depth)], [0.3, 0.7])
+    scene.cameras = [lightmesh.Camera(at, direction=along, near=near, far=far)]
+    part = renderer.render(scene, **settings)
+    seen = (part.position - at) @ along
+    assert near - 1e-3 <= seen[np.isfinite(part.depth)].min() and seen[np.isfinite(part.depth)].max() <= far + 1e-3
+    between = (depth > near + 1e-3) & (depth < far - 1e-3)
+    assert between.mean() > 0.1 and np.allclose(part.depth[between], whole.depth[between], rtol=1e-4)
+    camera_stats = part.stats["settings"]["camera"]
+    assert camera_stats["near"] == pytest.approx(near) and camera_stats["far"] == pytest.approx(far)
 
 
 def test_arrays_are_views_that_cannot_be_written(frame):

@@ -208,7 +208,7 @@ def all_lights() -> list[Light]:
 def test_infos_are_of_their_types(model):
     scene = Scene([floor(), cube()], all_lights())
     at, to = (4.0, 3.0, 5.0), (0.0, 0.7, 0.0)
-    scene.cameras = [Camera(at, to, vfov=40.0), Camera(at, to, hfov=40.0), Camera(at, to, height=3.0, shift=(0.1, 0.2))]
+    scene.cameras = [Camera(at, to, vfov=40.0), Camera(at, to, hfov=40.0), Camera(at, to, height=3.0, shift=(0.1, 0.2), near=1.0, far=9.0)]
     seen: set[str] = set()
     infos = [scene.info(), Scene([]).info(), Scene.builtin("gazebo").info(), Scene.open(model("milk_truck/CesiumMilkTruck.glb")).info()]
     assert [mistakes(info, SceneInfo, "info", seen) for info in infos] == [[]] * len(infos)
@@ -216,7 +216,7 @@ def test_infos_are_of_their_types(model):
 
 
 def test_stats_are_of_their_types(renderer):
-    scene = Scene([floor(), cube()], [Light.sphere((2.0, 4.0, 1.0), 0.5)], Camera((4.0, 3.0, 5.0), (0.0, 0.7, 0.0), shift=(0.1, 0.0)))
+    scene = Scene([floor(), cube()], [Light.sphere((2.0, 4.0, 1.0), 0.5)], Camera((4.0, 3.0, 5.0), (0.0, 0.7, 0.0), shift=(0.1, 0.0), near=0.5, far=50.0))
     seen: set[str] = set()
     frames = [renderer.render(scene, size=(16, 12), **settings) for settings in ({}, {"lookup": "half-ball", "crop": (0, 0, 8, 8)}, {"mode": "area"})]
     cancel = Cancel()

@@ -170,7 +170,8 @@ def cameras() -> list[Camera]:
     return [
         Camera((0, 0, 0), (0, 0, 1), up=(0, 1, 0), vfov=45.0, shift=(0.0, 0.1), name="front"),
         Camera((0, 0, 0), direction=(0, 0, 1), hfov=45.0),
-        Camera((0, 0, 0), direction=(0, 0, 1), height=2.0),
+        Camera((0, 0, 0), direction=(0, 0, 1), height=2.0, near=0.5, far=None),
+        Camera((0, 0, 0), direction=(0, 0, 1), far=9.0),
     ]
 
 

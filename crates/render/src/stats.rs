@@ -76,6 +76,12 @@ pub struct CameraStats {
     /// By how much the image is to the right of the viewing direction and above it, in heights of the image, if it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shift: Option<[f32; 2]>,
+    /// The depth from which on surfaces and lights are seen, if not all are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub near: Option<f32>,
+    /// The depth up to which they are seen, if not all are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub far: Option<f32>,
 }
 
 /// Every setting as used.
@@ -85,8 +91,8 @@ pub struct SettingsStats {
     pub mode: &'static str,
     pub bounces: u32,
     pub size: [u32; 2],
-    /// Column, row, width and height of the part that was rendered; `None`: all.
-    pub crop: Option<[u32; 4]>,
+    /// Column, row, width and height of the part that was rendered; `None`: all. The first two are negative to the left of the image and above.
+    pub crop: Option<[i64; 4]>,
     pub device: &'static str,
     pub threads: usize,
     pub step: Option<f32>,

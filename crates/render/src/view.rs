@@ -3,21 +3,24 @@
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use glam::Vec3;
+use lightmesh_layout::constants::{OUTSIDE, OUTSIDE_BITS};
 use lightmesh_layout::geometry as layout;
 use lightmesh_scene::{Camera, Projection};
 use lightmesh_trace::accel::Ray;
 use lightmesh_trace::simd::{Axes, LANES, dot, scaled, splat, sum};
 
+use crate::data::clip::Clip;
+
 /// A rectangle of an image's pixels.
 ///
 /// Pixels are indexed within it, y · width + x. What is random is keyed by their numbers in the image, so that it does not depend on the
-/// window.
+/// window. It may extend beyond the image: pixels of the image do not depend on those that do not belong to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Window {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Column and row of its first pixel in the image.
-    pub first: [u32; 2],
+    /// Column and row of its first pixel in the image; negative to the left of it and above.
+    pub first: [i32; 2],
     /// Width and height of the image.
     pub whole: [u32; 2],
 }
@@ -28,34 +31,58 @@ impl Window {
         Window { size, first: [0; 2], whole: size }
     }
 
-    /// With `margin` pixels more on each side, as far as the image goes.
+    /// With `margin` pixels more on each side: of a part of the image, as far as the image goes.
     pub fn grown(&self, margin: u32) -> Window {
+        let leaves = self.leaves_image();
         let side = |axis: usize| {
-            let first = self.first[axis].saturating_sub(margin);
-            let end = self.whole[axis].min((self.first[axis] + self.size[axis]).saturating_add(margin));
-            (first, end - first)
+            let first = i64::from(self.first[axis]) - i64::from(margin);
+            let end = i64::from(self.first[axis]) + i64::from(self.size[axis]) + i64::from(margin);
+            let (first, end) = if leaves { (first, end) } else { (first.max(0), end.min(self.whole[axis].into())) };
+            (first as i32, (end - first) as u32)
         };
         let [(x, width), (y, height)] = [side(0), side(1)];
         Window { size: [width, height], first: [x, y], ..*self }
     }
 
-    /// Column and row in the image of the pixel with this index.
+    /// Column and row in the image of the pixel with this index; negative to the left of it and above.
     #[inline(always)]
-    pub(crate) fn place(&self, index: u32) -> [u32; 2] {
+    pub(crate) fn place(&self, index: u32) -> [i32; 2] {
         let width = self.size[0];
-        [index % width + self.first[0], index / width + self.first[1]]
+        [(index % width) as i32 + self.first[0], (index / width) as i32 + self.first[1]]
     }
 
-    /// The number in the image of the pixel with this index.
+    /// Whether a place is in the image.
+    #[inline(always)]
+    fn is_in_image(&self, [x, y]: [i32; 2]) -> bool {
+        (x as u32) < self.whole[0] && (y as u32) < self.whole[1]
+    }
+
+    /// Whether some of its pixels are not.
+    pub(crate) fn leaves_image(&self) -> bool {
+        let last = [0, 1].map(|axis| self.first[axis] + self.size[axis] as i32 - 1);
+        !(self.is_in_image(self.first) && self.is_in_image(last))
+    }
+
+    /// Whether a pixel is in the image and another one is not: the first does not depend on it.
+    #[inline(always)]
+    pub(crate) fn is_beyond(&self, index: u32, other: u32) -> bool {
+        self.is_in_image(self.place(index)) && !self.is_in_image(self.place(other))
+    }
+
+    /// The number in the image of the pixel with this index. Outside of the image, rows have 65536 numbers, far from those of the image: pixels
+    /// that share one are far apart.
     #[inline(always)]
     pub fn number(&self, index: u32) -> u32 {
-        let (width, whole) = (self.size[0], self.whole[0]);
-        // Given points have no window.
-        if width == whole {
-            return self.first[1] * whole + index;
+        let Window { size, first, whole } = *self;
+        // All of an image. Given points have none.
+        if first == [0; 2] && size[0] == whole[0] && size[1] <= whole[1] {
+            return index;
         }
         let [x, y] = self.place(index);
-        y * whole + x
+        if self.is_in_image([x, y]) {
+            return y as u32 * whole[0] + x as u32;
+        }
+        OUTSIDE.wrapping_add((y as u32) << OUTSIDE_BITS).wrapping_add(x as u32)
     }
 }
 
@@ -73,12 +100,13 @@ pub struct View {
     /// The same downwards.
     down: Vec3,
     perspective: bool,
+    clip: Clip,
 }
 
 impl View {
     /// The view of `camera` in an image of `size` pixels.
     pub fn new(camera: &Camera, size: [u32; 2]) -> View {
-        let (right, up, _) = camera.basis();
+        let (right, up, axis) = camera.basis();
         let [width, height] = size.map(|pixels| pixels as f32);
         let (origin, forward) = camera.middle(width / height);
         let (perspective, picture_height) = match camera.projection {
@@ -87,7 +115,8 @@ impl View {
         };
         let pixel = picture_height / height;
         let window = Window::all(size);
-        View { window, origin, forward, right: pixel * right, down: -pixel * up, perspective }
+        let clip = Clip { origin, axis, near: camera.near, far: camera.far };
+        View { window, origin, forward, right: pixel * right, down: -pixel * up, perspective, clip }
     }
 
     /// The same camera for the pixels of a window alone.
@@ -116,6 +145,11 @@ impl View {
         self.origin
     }
 
+    /// The depths that are seen.
+    pub(crate) fn clip(&self) -> Clip {
+        self.clip
+    }
+
     /// The view as a record for kernels.
     pub(crate) fn record(&self) -> layout::View {
         layout::View {
@@ -123,9 +157,13 @@ impl View {
             forward: layout::Vec3::from(self.forward.to_array()),
             right: layout::Vec3::from(self.right.to_array()),
             down: layout::Vec3::from(self.down.to_array()),
+            axis: layout::Vec3::from(self.clip.axis.to_array()),
             size: self.window.size,
             first: self.window.first,
             whole: self.window.whole,
+            near: self.clip.near,
+            far: self.clip.far,
+            clips: u32::from(self.clip.cuts()),
             perspective: u32::from(self.perspective),
             spare: 0,
         }

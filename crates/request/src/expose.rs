@@ -115,23 +115,33 @@ impl Metering {
         // An automatic exposure is that of the whole image.
         let mut settings = settings.clone();
         let crop = settings.crop.take_if(|_| self.is_automatic());
+        // What lies around the image is not in it.
+        let around = crop.filter(|crop| !crop.is_within(settings.size));
         settings.transparent |= self.is_apart();
         let start = Instant::now();
         let is_reflected = self.is_reflected(&prepared.scene, &settings);
-        let times = if is_reflected { 2 } else { 1 };
+        let times = if is_reflected || around.is_some() { 2 } else { 1 };
+        let again = || Part::nth(host, 1, times, start.elapsed().as_secs_f64());
         let mut frame = render(prepared, &settings, &Part::nth(host, 0, times, 0.0))?;
         let stops = self.stops(&frame, host);
-        if let Some(background) = self.background(stops) {
-            if is_reflected && !host.cancelled() {
-                settings.transparent = false;
-                let lights = prepared.scene.lights.clone().with_background(background);
-                let part = Part::nth(host, 1, times, start.elapsed().as_secs_f64());
-                frame = render(&prepared.with_lights(lights), &settings, &part)?;
-            } else {
+        settings.crop = settings.crop.or(around);
+        let background = self.background(stops);
+        if let Some(background) = background
+            && is_reflected
+            && !host.cancelled()
+        {
+            settings.transparent = false;
+            let lights = prepared.scene.lights.clone().with_background(background);
+            frame = render(&prepared.with_lights(lights), &settings, &again())?;
+        } else {
+            if around.is_some() {
+                frame = render(prepared, &settings, &again())?;
+            }
+            if let Some(background) = background {
                 frame = self.put_behind(frame, background);
             }
         }
-        if let Some(crop) = crop {
+        if let Some(crop) = crop.filter(|_| around.is_none()) {
             frame = frame.cropped(crop).expect("settings were checked: the crop is in the image");
         }
         Ok((frame, stops))

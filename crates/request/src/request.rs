@@ -195,8 +195,8 @@ settings! {
     /// Set width and height in pixels
     Image "Image" size: Size, placeholder "WxH";
 
-    /// Render only this part: column and row of its first pixel, width and height; its pixels stay the same [default: the
-    /// whole image]
+    /// Render only this part: column and row of its first pixel, width and height; its pixels stay the same. Beyond the
+    /// edges, also to the left of column 0 and above row 0, the view goes on [default: the whole image]
     Image "Image" crop: Option<Crop>, placeholder "X,Y,W,H";
 
     /// Set the background: one number, r,g,b, "#rrggbb" (sRGB) or transparent, which gives png and exr files an alpha

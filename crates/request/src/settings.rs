@@ -9,7 +9,7 @@ use crate::value::Background;
 
 /// All settings of an image of a scene in this format, except the camera, which is part of the scene.
 pub(crate) fn settings(request: &Request, format: Option<SceneFormat>) -> Result<Settings, RequestError> {
-    if let Some(crop) = request.crop.filter(|crop| !crop.is_within(request.size.0)) {
+    if let Some(crop) = request.crop.filter(|crop| !crop.is_near(request.size.0)) {
         return Err(RequestError::Crop { crop, size: request.size.0 });
     }
     let mut settings = Settings::default()

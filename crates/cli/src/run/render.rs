@@ -121,7 +121,7 @@ fn details(stats: &Stats) -> Vec<String> {
 
 fn summary(frame: &Frame, picture: &str) -> String {
     let (settings, seconds) = (&frame.stats.settings, &frame.stats.seconds);
-    let [width, height] = settings.crop.map_or(settings.size, |[_, _, width, height]| [width, height]);
+    let [width, height] = frame.size();
     format!(
         "{}, {width}x{height}, {}: {:.3} s (load {:.3} s, build {:.3} s, write {:.3} s), {}",
         frame.stats.scene.name, settings.mode, seconds.render, seconds.load, seconds.build, seconds.write, picture

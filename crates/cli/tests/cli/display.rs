@@ -115,10 +115,23 @@ fn a_crop_is_a_part_of_the_whole_also_as_codes() {
         assert_eq!((part.width(), part.height()), (14, 8));
         assert_eq!((part.color(), part.alpha()), (expected.color(), expected.alpha()), "{flags:?}");
     }
-    let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--size", "32x24", "--crop", "-9,7,24,8"]);
-    assert!(message.contains("'-9,7,24,8' for '--crop") && message.contains("the first two at least 0"), "{message}");
-    let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--size", "32x24", "--crop", "9,7,24,8"]);
-    assert!(message.contains("9,7,24,8") && message.contains("32x24") && message.contains("--crop"), "{message}");
+    let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--size", "32x24", "--crop", "-9,7,24,0"]);
+    assert!(message.contains("'-9,7,24,0' for '--crop") && message.contains("the last two at least 1"), "{message}");
+    let message = place.refused(&["render", "ball.toml", "-o", "a.png", "--size", "32x24", "--crop", "9,7,70000,8"]);
+    assert!(message.contains("9,7,70000,8") && message.contains("32x24") && message.contains("--crop"), "{message}");
+}
+
+#[test]
+fn overscan_is_around_the_image_also_as_codes() {
+    let place = place();
+    for flags in [&["--exposure", "auto"][..], &["--dither", "on", "--background", "transparent"]] {
+        let (whole, _) = render(&place, "whole.png", flags);
+        let (around, settings) = render(&place, "around.png", &[flags, &["--crop", "-3,-2,38,28"]].concat());
+        assert_eq!((&settings["crop"], &settings["size"]), (&json!([-3, -2, 38, 28]), &json!([32, 24])));
+        assert_eq!((around.width(), around.height()), (38, 28));
+        let own = around.with_window([-3, -2], [32, 24]).cropped([0, 0], [32, 24]).unwrap();
+        assert_eq!((own.color(), own.alpha()), (whole.color(), whole.alpha()), "{flags:?}");
+    }
 }
 
 #[test]

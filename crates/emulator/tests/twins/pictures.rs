@@ -7,7 +7,7 @@ use lightmesh_render::{
     AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene, Settings, Step,
     Unobserved, render_on, visibility_on,
 };
-use lightmesh_scene::{Bounds, Up};
+use lightmesh_scene::{Bounds, Camera, Up};
 use lightmesh_testkit::{Picture, Random, runs_all, seed};
 
 use crate::pairwise;
@@ -74,6 +74,11 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
         let crop = move || settings(&TEXTURED, way).with_aa(3).with_crop(Crop::new([17, 9], [15, 11]));
         let case = Case::new(part, move |cuda| same_picture(cuda, &TEXTURED, 0, crop()));
         cases.push(case.only_if(way.0 == "lists"));
+        for (subject, kind) in [(&TEXTURED, Kind::Around), (&MIRRORS, Kind::Around), (&GLAZED, Kind::Clipped)] {
+            let name = format!("{}::{}::{}", subject.name, kind.name(), way.0);
+            let case = Case::new(name, move |cuda| same(cuda, subject, way, kind, 0, SMALL));
+            cases.push(case.only_if(way.0 == "lists" || way.0 == "adaptive"));
+        }
         for aa in [1, 3] {
             for subject in [&TEXTURED, &SURROUNDED, &GLAZED] {
                 let ground = format!("{}::ground::{}::{aa}", subject.name, way.0);
@@ -114,10 +119,15 @@ enum Kind {
     Ground,
     /// A part of an image.
     Part,
+    /// A part, and what is around the image there.
+    Around,
+    /// One of which the nearest and the farthest surfaces are cut away.
+    Clipped,
 }
 
 impl Kind {
-    const ALL: [Kind; 5] = [Kind::Picture, Kind::Samples, Kind::Points, Kind::Ground, Kind::Part];
+    const ALL: [Kind; 7] =
+        [Kind::Picture, Kind::Samples, Kind::Points, Kind::Ground, Kind::Part, Kind::Around, Kind::Clipped];
 
     fn name(self) -> &'static str {
         match self {
@@ -126,6 +136,8 @@ impl Kind {
             Kind::Points => "points",
             Kind::Ground => "ground",
             Kind::Part => "part",
+            Kind::Around => "around",
+            Kind::Clipped => "clipped",
         }
     }
 }
@@ -142,9 +154,14 @@ fn same<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, way: Way, kind: Ki
         Kind::Points => same_at_points(cuda, subject, structure, settings),
         Kind::Ground => same_shadows(cuda, subject, structure, settings.with_aa(3)),
         Kind::Part => {
-            let part = Crop::new([size[0] / 3, size[1] / 4], size.map(|length| length / 3));
+            let part = Crop::new([size[0] / 3, size[1] / 4].map(|place| place as i32), size.map(|length| length / 3));
             same_picture(cuda, subject, structure, settings.with_aa(3).with_crop(part));
         }
+        Kind::Around => {
+            let around = Crop::new([-7, -5], [size[0] + 11, size[1] / 2]);
+            same_picture(cuda, subject, structure, settings.with_aa(3).with_crop(around));
+        }
+        Kind::Clipped => same_picture(cuda, subject, structure, settings.with_aa(2).with_camera(clipped(subject))),
     }
 }
 
@@ -153,6 +170,20 @@ fn settings(subject: &Subject, (_, mode, lookup): Way) -> Settings {
     let settings = Settings::default().with_ambient_light(AmbientSource::Constant).with_bounces(2).with_layers(true);
     let settings = settings.with_mode(mode).with_lookup(lookup).with_size(SIZE);
     settings.with_samples(4).with_step(Step::Fixed(subject.step)).with_radius(2.1).with_aa(1)
+}
+
+/// The camera of a subject without the nearest and the farthest thirds of the depths of its scene.
+fn clipped(subject: &'static Subject) -> Camera {
+    let scene = subject.scene();
+    let camera = scene.cameras[0].clone();
+    let Bounds { min, max } = scene.geometry.mesh.bounds();
+    let corner = |number: usize| Vec3::from_array([0, 1, 2].map(|axis| [min, max][number >> axis & 1][axis]));
+    let depth = |number: usize| (corner(number) - camera.position).dot(camera.direction);
+    let (low, high) = (0..8).map(depth).fold((f32::INFINITY, 0.0_f32), |(low, high), at| (low.min(at), high.max(at)));
+    // Without surfaces there are no depths.
+    let low = low.min(high).max(0.0);
+    let (near, far) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+    camera.clone().with_clip(near, far).unwrap_or(camera)
 }
 
 /// The image with these settings.

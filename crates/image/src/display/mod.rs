@@ -108,7 +108,8 @@ impl Display {
             (BitDepth::Eight, false, None) => transfer.encode_into(&shown, bytes),
             (BitDepth::Eight, false, _) => put(bytes, &shown, alpha, |_, value| [transfer.encode(value)], narrow),
             (BitDepth::Eight, true, _) => {
-                let [left, top] = frame.window().first;
+                // The pattern goes on beyond the edges of the image.
+                let [left, top] = frame.window().first.map(|place| place as u32);
                 let threshold = |x: u32| dither::threshold(left.wrapping_add(x), top.wrapping_add(y as u32));
                 let code = |x, value| [transfer.encode_between(value, threshold(x))];
                 put(bytes, &shown, alpha, code, narrow);

@@ -216,7 +216,7 @@ fn header(frame: &Frame, part: &Part<'_>, several: bool, options: &SaveOptions) 
     header.own_attributes.layer_name = several.then(|| Text::from(part.name));
     // The crate and the format number pixels in 31 bits; images are smaller.
     let Window { first, whole } = frame.window();
-    header.own_attributes.layer_position = Vec2(first[0] as i32, first[1] as i32);
+    header.own_attributes.layer_position = Vec2(first[0], first[1]);
     header.shared_attributes.display_window = IntegerBounds::from_dimensions((whole[0] as usize, whole[1] as usize));
     header
 }

@@ -40,6 +40,10 @@
 #define CONTRAST_FLOOR 0x1.99999ap-3f
 // Rows above and below a band with which its pixels are compared.
 #define MARGIN_ROWS 1u
+// Pixels outside of the image are numbered by rows of 2 to this power,
+#define OUTSIDE_BITS 16u
+// with this number where the image begins: those of the image are smaller.
+#define OUTSIDE 0x80000000u
 // Values per thread of a prefix sum.
 #define VALUES_OF_THREAD 4u
 // The largest number of single precision.
@@ -758,22 +762,30 @@ struct alignas(4) View {
     Vec3 forward;
     Vec3 right;
     Vec3 down;
+    Vec3 axis;
     unsigned size[2];
-    unsigned first[2];
+    int first[2];
     unsigned whole[2];
+    float near;
+    float far;
+    unsigned clips;
     unsigned perspective;
     unsigned spare;
 };
-static_assert(sizeof(View) == 80, "size of View");
+static_assert(sizeof(View) == 104, "size of View");
 static_assert(PLACE_OF(View, origin) == 0, "place of View::origin");
 static_assert(PLACE_OF(View, forward) == 12, "place of View::forward");
 static_assert(PLACE_OF(View, right) == 24, "place of View::right");
 static_assert(PLACE_OF(View, down) == 36, "place of View::down");
-static_assert(PLACE_OF(View, size) == 48, "place of View::size");
-static_assert(PLACE_OF(View, first) == 56, "place of View::first");
-static_assert(PLACE_OF(View, whole) == 64, "place of View::whole");
-static_assert(PLACE_OF(View, perspective) == 72, "place of View::perspective");
-static_assert(PLACE_OF(View, spare) == 76, "place of View::spare");
+static_assert(PLACE_OF(View, axis) == 48, "place of View::axis");
+static_assert(PLACE_OF(View, size) == 60, "place of View::size");
+static_assert(PLACE_OF(View, first) == 68, "place of View::first");
+static_assert(PLACE_OF(View, whole) == 76, "place of View::whole");
+static_assert(PLACE_OF(View, near) == 84, "place of View::near");
+static_assert(PLACE_OF(View, far) == 88, "place of View::far");
+static_assert(PLACE_OF(View, clips) == 92, "place of View::clips");
+static_assert(PLACE_OF(View, perspective) == 96, "place of View::perspective");
+static_assert(PLACE_OF(View, spare) == 100, "place of View::spare");
 
 struct alignas(4) ListedRay {
     Vec3 origin;
@@ -809,15 +821,15 @@ struct alignas(8) Rays {
     unsigned bounces;
     Cone cone;
 };
-static_assert(sizeof(Rays) == 120, "size of Rays");
+static_assert(sizeof(Rays) == 144, "size of Rays");
 static_assert(PLACE_OF(Rays, view) == 0, "place of Rays::view");
-static_assert(PLACE_OF(Rays, list) == 80, "place of Rays::list");
-static_assert(PLACE_OF(Rays, cones) == 88, "place of Rays::cones");
-static_assert(PLACE_OF(Rays, first_pixel) == 96, "place of Rays::first_pixel");
-static_assert(PLACE_OF(Rays, count) == 100, "place of Rays::count");
-static_assert(PLACE_OF(Rays, depth) == 104, "place of Rays::depth");
-static_assert(PLACE_OF(Rays, bounces) == 108, "place of Rays::bounces");
-static_assert(PLACE_OF(Rays, cone) == 112, "place of Rays::cone");
+static_assert(PLACE_OF(Rays, list) == 104, "place of Rays::list");
+static_assert(PLACE_OF(Rays, cones) == 112, "place of Rays::cones");
+static_assert(PLACE_OF(Rays, first_pixel) == 120, "place of Rays::first_pixel");
+static_assert(PLACE_OF(Rays, count) == 124, "place of Rays::count");
+static_assert(PLACE_OF(Rays, depth) == 128, "place of Rays::depth");
+static_assert(PLACE_OF(Rays, bounces) == 132, "place of Rays::bounces");
+static_assert(PLACE_OF(Rays, cone) == 136, "place of Rays::cone");
 
 struct alignas(8) Tally {
     enum : unsigned {
@@ -1501,26 +1513,26 @@ struct alignas(8) HemisphereRays {
     unsigned lamps;
     unsigned blocks;
 };
-static_assert(sizeof(HemisphereRays) == 920, "size of HemisphereRays");
+static_assert(sizeof(HemisphereRays) == 944, "size of HemisphereRays");
 static_assert(PLACE_OF(HemisphereRays, scene) == 0, "place of HemisphereRays::scene");
 static_assert(PLACE_OF(HemisphereRays, rays) == 680, "place of HemisphereRays::rays");
-static_assert(PLACE_OF(HemisphereRays, sampling) == 800, "place of HemisphereRays::sampling");
-static_assert(PLACE_OF(HemisphereRays, tally) == 816, "place of HemisphereRays::tally");
-static_assert(PLACE_OF(HemisphereRays, records) == 824, "place of HemisphereRays::records");
-static_assert(PLACE_OF(HemisphereRays, list) == 832, "place of HemisphereRays::list");
-static_assert(PLACE_OF(HemisphereRays, weights) == 840, "place of HemisphereRays::weights");
-static_assert(PLACE_OF(HemisphereRays, areas) == 848, "place of HemisphereRays::areas");
-static_assert(PLACE_OF(HemisphereRays, hits) == 856, "place of HemisphereRays::hits");
-static_assert(PLACE_OF(HemisphereRays, seen) == 864, "place of HemisphereRays::seen");
-static_assert(PLACE_OF(HemisphereRays, levels) == 872, "place of HemisphereRays::levels");
-static_assert(PLACE_OF(HemisphereRays, brightness) == 880, "place of HemisphereRays::brightness");
-static_assert(PLACE_OF(HemisphereRays, ends) == 888, "place of HemisphereRays::ends");
-static_assert(PLACE_OF(HemisphereRays, count) == 896, "place of HemisphereRays::count");
-static_assert(PLACE_OF(HemisphereRays, side) == 900, "place of HemisphereRays::side");
-static_assert(PLACE_OF(HemisphereRays, reach) == 904, "place of HemisphereRays::reach");
-static_assert(PLACE_OF(HemisphereRays, is_near) == 908, "place of HemisphereRays::is_near");
-static_assert(PLACE_OF(HemisphereRays, lamps) == 912, "place of HemisphereRays::lamps");
-static_assert(PLACE_OF(HemisphereRays, blocks) == 916, "place of HemisphereRays::blocks");
+static_assert(PLACE_OF(HemisphereRays, sampling) == 824, "place of HemisphereRays::sampling");
+static_assert(PLACE_OF(HemisphereRays, tally) == 840, "place of HemisphereRays::tally");
+static_assert(PLACE_OF(HemisphereRays, records) == 848, "place of HemisphereRays::records");
+static_assert(PLACE_OF(HemisphereRays, list) == 856, "place of HemisphereRays::list");
+static_assert(PLACE_OF(HemisphereRays, weights) == 864, "place of HemisphereRays::weights");
+static_assert(PLACE_OF(HemisphereRays, areas) == 872, "place of HemisphereRays::areas");
+static_assert(PLACE_OF(HemisphereRays, hits) == 880, "place of HemisphereRays::hits");
+static_assert(PLACE_OF(HemisphereRays, seen) == 888, "place of HemisphereRays::seen");
+static_assert(PLACE_OF(HemisphereRays, levels) == 896, "place of HemisphereRays::levels");
+static_assert(PLACE_OF(HemisphereRays, brightness) == 904, "place of HemisphereRays::brightness");
+static_assert(PLACE_OF(HemisphereRays, ends) == 912, "place of HemisphereRays::ends");
+static_assert(PLACE_OF(HemisphereRays, count) == 920, "place of HemisphereRays::count");
+static_assert(PLACE_OF(HemisphereRays, side) == 924, "place of HemisphereRays::side");
+static_assert(PLACE_OF(HemisphereRays, reach) == 928, "place of HemisphereRays::reach");
+static_assert(PLACE_OF(HemisphereRays, is_near) == 932, "place of HemisphereRays::is_near");
+static_assert(PLACE_OF(HemisphereRays, lamps) == 936, "place of HemisphereRays::lamps");
+static_assert(PLACE_OF(HemisphereRays, blocks) == 940, "place of HemisphereRays::blocks");
 
 struct alignas(8) GuideRays {
     HemisphereRays hemispheres;
@@ -1531,24 +1543,24 @@ struct alignas(8) GuideRays {
     unsigned rays;
     unsigned spare;
 };
-static_assert(sizeof(GuideRays) == 952, "size of GuideRays");
+static_assert(sizeof(GuideRays) == 976, "size of GuideRays");
 static_assert(PLACE_OF(GuideRays, hemispheres) == 0, "place of GuideRays::hemispheres");
-static_assert(PLACE_OF(GuideRays, uneven) == 920, "place of GuideRays::uneven");
-static_assert(PLACE_OF(GuideRays, ends) == 928, "place of GuideRays::ends");
-static_assert(PLACE_OF(GuideRays, first) == 936, "place of GuideRays::first");
-static_assert(PLACE_OF(GuideRays, count) == 940, "place of GuideRays::count");
-static_assert(PLACE_OF(GuideRays, rays) == 944, "place of GuideRays::rays");
-static_assert(PLACE_OF(GuideRays, spare) == 948, "place of GuideRays::spare");
+static_assert(PLACE_OF(GuideRays, uneven) == 944, "place of GuideRays::uneven");
+static_assert(PLACE_OF(GuideRays, ends) == 952, "place of GuideRays::ends");
+static_assert(PLACE_OF(GuideRays, first) == 960, "place of GuideRays::first");
+static_assert(PLACE_OF(GuideRays, count) == 964, "place of GuideRays::count");
+static_assert(PLACE_OF(GuideRays, rays) == 968, "place of GuideRays::rays");
+static_assert(PLACE_OF(GuideRays, spare) == 972, "place of GuideRays::spare");
 
 struct alignas(8) ComeCloser {
     HemisphereRays hemispheres;
     Record *records;
     LightPlace *places;
 };
-static_assert(sizeof(ComeCloser) == 936, "size of ComeCloser");
+static_assert(sizeof(ComeCloser) == 960, "size of ComeCloser");
 static_assert(PLACE_OF(ComeCloser, hemispheres) == 0, "place of ComeCloser::hemispheres");
-static_assert(PLACE_OF(ComeCloser, records) == 920, "place of ComeCloser::records");
-static_assert(PLACE_OF(ComeCloser, places) == 928, "place of ComeCloser::places");
+static_assert(PLACE_OF(ComeCloser, records) == 944, "place of ComeCloser::records");
+static_assert(PLACE_OF(ComeCloser, places) == 952, "place of ComeCloser::places");
 
 struct alignas(8) Bounce {
     Scene scene;
@@ -1568,23 +1580,23 @@ struct alignas(8) Bounce {
     unsigned count;
     unsigned insist;
 };
-static_assert(sizeof(Bounce) == 1720, "size of Bounce");
+static_assert(sizeof(Bounce) == 1744, "size of Bounce");
 static_assert(PLACE_OF(Bounce, scene) == 0, "place of Bounce::scene");
 static_assert(PLACE_OF(Bounce, hemispheres) == 680, "place of Bounce::hemispheres");
-static_assert(PLACE_OF(Bounce, names) == 1600, "place of Bounce::names");
-static_assert(PLACE_OF(Bounce, nodes) == 1640, "place of Bounce::nodes");
-static_assert(PLACE_OF(Bounce, records) == 1648, "place of Bounce::records");
-static_assert(PLACE_OF(Bounce, links) == 1656, "place of Bounce::links");
-static_assert(PLACE_OF(Bounce, listed) == 1664, "place of Bounce::listed");
-static_assert(PLACE_OF(Bounce, listed_count) == 1672, "place of Bounce::listed_count");
-static_assert(PLACE_OF(Bounce, unlinked) == 1680, "place of Bounce::unlinked");
-static_assert(PLACE_OF(Bounce, unlinked_count) == 1688, "place of Bounce::unlinked_count");
-static_assert(PLACE_OF(Bounce, linked) == 1696, "place of Bounce::linked");
-static_assert(PLACE_OF(Bounce, order) == 1700, "place of Bounce::order");
-static_assert(PLACE_OF(Bounce, finer) == 1704, "place of Bounce::finer");
-static_assert(PLACE_OF(Bounce, first) == 1708, "place of Bounce::first");
-static_assert(PLACE_OF(Bounce, count) == 1712, "place of Bounce::count");
-static_assert(PLACE_OF(Bounce, insist) == 1716, "place of Bounce::insist");
+static_assert(PLACE_OF(Bounce, names) == 1624, "place of Bounce::names");
+static_assert(PLACE_OF(Bounce, nodes) == 1664, "place of Bounce::nodes");
+static_assert(PLACE_OF(Bounce, records) == 1672, "place of Bounce::records");
+static_assert(PLACE_OF(Bounce, links) == 1680, "place of Bounce::links");
+static_assert(PLACE_OF(Bounce, listed) == 1688, "place of Bounce::listed");
+static_assert(PLACE_OF(Bounce, listed_count) == 1696, "place of Bounce::listed_count");
+static_assert(PLACE_OF(Bounce, unlinked) == 1704, "place of Bounce::unlinked");
+static_assert(PLACE_OF(Bounce, unlinked_count) == 1712, "place of Bounce::unlinked_count");
+static_assert(PLACE_OF(Bounce, linked) == 1720, "place of Bounce::linked");
+static_assert(PLACE_OF(Bounce, order) == 1724, "place of Bounce::order");
+static_assert(PLACE_OF(Bounce, finer) == 1728, "place of Bounce::finer");
+static_assert(PLACE_OF(Bounce, first) == 1732, "place of Bounce::first");
+static_assert(PLACE_OF(Bounce, count) == 1736, "place of Bounce::count");
+static_assert(PLACE_OF(Bounce, insist) == 1740, "place of Bounce::insist");
 
 struct alignas(8) GatherCoarse {
     HemisphereRays hemispheres;
@@ -1595,14 +1607,14 @@ struct alignas(8) GatherCoarse {
     unsigned first;
     unsigned before;
 };
-static_assert(sizeof(GatherCoarse) == 960, "size of GatherCoarse");
+static_assert(sizeof(GatherCoarse) == 984, "size of GatherCoarse");
 static_assert(PLACE_OF(GatherCoarse, hemispheres) == 0, "place of GatherCoarse::hemispheres");
-static_assert(PLACE_OF(GatherCoarse, coarse) == 920, "place of GatherCoarse::coarse");
-static_assert(PLACE_OF(GatherCoarse, owners) == 928, "place of GatherCoarse::owners");
-static_assert(PLACE_OF(GatherCoarse, uneven) == 936, "place of GatherCoarse::uneven");
-static_assert(PLACE_OF(GatherCoarse, uneven_count) == 944, "place of GatherCoarse::uneven_count");
-static_assert(PLACE_OF(GatherCoarse, first) == 952, "place of GatherCoarse::first");
-static_assert(PLACE_OF(GatherCoarse, before) == 956, "place of GatherCoarse::before");
+static_assert(PLACE_OF(GatherCoarse, coarse) == 944, "place of GatherCoarse::coarse");
+static_assert(PLACE_OF(GatherCoarse, owners) == 952, "place of GatherCoarse::owners");
+static_assert(PLACE_OF(GatherCoarse, uneven) == 960, "place of GatherCoarse::uneven");
+static_assert(PLACE_OF(GatherCoarse, uneven_count) == 968, "place of GatherCoarse::uneven_count");
+static_assert(PLACE_OF(GatherCoarse, first) == 976, "place of GatherCoarse::first");
+static_assert(PLACE_OF(GatherCoarse, before) == 980, "place of GatherCoarse::before");
 
 struct alignas(8) GatherFine {
     HemisphereRays hemispheres;
@@ -1616,17 +1628,17 @@ struct alignas(8) GatherFine {
     unsigned count;
     unsigned spare;
 };
-static_assert(sizeof(GatherFine) == 1776, "size of GatherFine");
+static_assert(sizeof(GatherFine) == 1800, "size of GatherFine");
 static_assert(PLACE_OF(GatherFine, hemispheres) == 0, "place of GatherFine::hemispheres");
-static_assert(PLACE_OF(GatherFine, lookup) == 920, "place of GatherFine::lookup");
-static_assert(PLACE_OF(GatherFine, coarse) == 1728, "place of GatherFine::coarse");
-static_assert(PLACE_OF(GatherFine, fine) == 1736, "place of GatherFine::fine");
-static_assert(PLACE_OF(GatherFine, misses) == 1744, "place of GatherFine::misses");
-static_assert(PLACE_OF(GatherFine, miss_count) == 1752, "place of GatherFine::miss_count");
-static_assert(PLACE_OF(GatherFine, first) == 1760, "place of GatherFine::first");
-static_assert(PLACE_OF(GatherFine, first_miss) == 1764, "place of GatherFine::first_miss");
-static_assert(PLACE_OF(GatherFine, count) == 1768, "place of GatherFine::count");
-static_assert(PLACE_OF(GatherFine, spare) == 1772, "place of GatherFine::spare");
+static_assert(PLACE_OF(GatherFine, lookup) == 944, "place of GatherFine::lookup");
+static_assert(PLACE_OF(GatherFine, coarse) == 1752, "place of GatherFine::coarse");
+static_assert(PLACE_OF(GatherFine, fine) == 1760, "place of GatherFine::fine");
+static_assert(PLACE_OF(GatherFine, misses) == 1768, "place of GatherFine::misses");
+static_assert(PLACE_OF(GatherFine, miss_count) == 1776, "place of GatherFine::miss_count");
+static_assert(PLACE_OF(GatherFine, first) == 1784, "place of GatherFine::first");
+static_assert(PLACE_OF(GatherFine, first_miss) == 1788, "place of GatherFine::first_miss");
+static_assert(PLACE_OF(GatherFine, count) == 1792, "place of GatherFine::count");
+static_assert(PLACE_OF(GatherFine, spare) == 1796, "place of GatherFine::spare");
 
 struct alignas(8) GatherPoints {
     Scene scene;
@@ -1658,35 +1670,35 @@ struct alignas(8) GatherPoints {
     unsigned brute_force;
     unsigned spare;
 };
-static_assert(sizeof(GatherPoints) == 1776, "size of GatherPoints");
+static_assert(sizeof(GatherPoints) == 1800, "size of GatherPoints");
 static_assert(PLACE_OF(GatherPoints, scene) == 0, "place of GatherPoints::scene");
 static_assert(PLACE_OF(GatherPoints, rays) == 680, "place of GatherPoints::rays");
-static_assert(PLACE_OF(GatherPoints, hits) == 800, "place of GatherPoints::hits");
-static_assert(PLACE_OF(GatherPoints, lookup) == 808, "place of GatherPoints::lookup");
-static_assert(PLACE_OF(GatherPoints, fine) == 1616, "place of GatherPoints::fine");
-static_assert(PLACE_OF(GatherPoints, places) == 1624, "place of GatherPoints::places");
-static_assert(PLACE_OF(GatherPoints, means) == 1632, "place of GatherPoints::means");
-static_assert(PLACE_OF(GatherPoints, misses) == 1640, "place of GatherPoints::misses");
-static_assert(PLACE_OF(GatherPoints, miss_count) == 1648, "place of GatherPoints::miss_count");
-static_assert(PLACE_OF(GatherPoints, records) == 1656, "place of GatherPoints::records");
-static_assert(PLACE_OF(GatherPoints, asked) == 1664, "place of GatherPoints::asked");
-static_assert(PLACE_OF(GatherPoints, own) == 1672, "place of GatherPoints::own");
-static_assert(PLACE_OF(GatherPoints, coarse) == 1680, "place of GatherPoints::coarse");
-static_assert(PLACE_OF(GatherPoints, light) == 1688, "place of GatherPoints::light");
-static_assert(PLACE_OF(GatherPoints, normals) == 1696, "place of GatherPoints::normals");
-static_assert(PLACE_OF(GatherPoints, samples) == 1704, "place of GatherPoints::samples");
-static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1712, "place of GatherPoints::sampled_pixels");
-static_assert(PLACE_OF(GatherPoints, sample_count) == 1720, "place of GatherPoints::sample_count");
-static_assert(PLACE_OF(GatherPoints, first_sampled) == 1724, "place of GatherPoints::first_sampled");
-static_assert(PLACE_OF(GatherPoints, eye) == 1728, "place of GatherPoints::eye");
-static_assert(PLACE_OF(GatherPoints, spacing) == 1740, "place of GatherPoints::spacing");
-static_assert(PLACE_OF(GatherPoints, pixels) == 1748, "place of GatherPoints::pixels");
-static_assert(PLACE_OF(GatherPoints, least_level) == 1752, "place of GatherPoints::least_level");
-static_assert(PLACE_OF(GatherPoints, first) == 1756, "place of GatherPoints::first");
-static_assert(PLACE_OF(GatherPoints, count) == 1760, "place of GatherPoints::count");
-static_assert(PLACE_OF(GatherPoints, first_miss) == 1764, "place of GatherPoints::first_miss");
-static_assert(PLACE_OF(GatherPoints, brute_force) == 1768, "place of GatherPoints::brute_force");
-static_assert(PLACE_OF(GatherPoints, spare) == 1772, "place of GatherPoints::spare");
+static_assert(PLACE_OF(GatherPoints, hits) == 824, "place of GatherPoints::hits");
+static_assert(PLACE_OF(GatherPoints, lookup) == 832, "place of GatherPoints::lookup");
+static_assert(PLACE_OF(GatherPoints, fine) == 1640, "place of GatherPoints::fine");
+static_assert(PLACE_OF(GatherPoints, places) == 1648, "place of GatherPoints::places");
+static_assert(PLACE_OF(GatherPoints, means) == 1656, "place of GatherPoints::means");
+static_assert(PLACE_OF(GatherPoints, misses) == 1664, "place of GatherPoints::misses");
+static_assert(PLACE_OF(GatherPoints, miss_count) == 1672, "place of GatherPoints::miss_count");
+static_assert(PLACE_OF(GatherPoints, records) == 1680, "place of GatherPoints::records");
+static_assert(PLACE_OF(GatherPoints, asked) == 1688, "place of GatherPoints::asked");
+static_assert(PLACE_OF(GatherPoints, own) == 1696, "place of GatherPoints::own");
+static_assert(PLACE_OF(GatherPoints, coarse) == 1704, "place of GatherPoints::coarse");
+static_assert(PLACE_OF(GatherPoints, light) == 1712, "place of GatherPoints::light");
+static_assert(PLACE_OF(GatherPoints, normals) == 1720, "place of GatherPoints::normals");
+static_assert(PLACE_OF(GatherPoints, samples) == 1728, "place of GatherPoints::samples");
+static_assert(PLACE_OF(GatherPoints, sampled_pixels) == 1736, "place of GatherPoints::sampled_pixels");
+static_assert(PLACE_OF(GatherPoints, sample_count) == 1744, "place of GatherPoints::sample_count");
+static_assert(PLACE_OF(GatherPoints, first_sampled) == 1748, "place of GatherPoints::first_sampled");
+static_assert(PLACE_OF(GatherPoints, eye) == 1752, "place of GatherPoints::eye");
+static_assert(PLACE_OF(GatherPoints, spacing) == 1764, "place of GatherPoints::spacing");
+static_assert(PLACE_OF(GatherPoints, pixels) == 1772, "place of GatherPoints::pixels");
+static_assert(PLACE_OF(GatherPoints, least_level) == 1776, "place of GatherPoints::least_level");
+static_assert(PLACE_OF(GatherPoints, first) == 1780, "place of GatherPoints::first");
+static_assert(PLACE_OF(GatherPoints, count) == 1784, "place of GatherPoints::count");
+static_assert(PLACE_OF(GatherPoints, first_miss) == 1788, "place of GatherPoints::first_miss");
+static_assert(PLACE_OF(GatherPoints, brute_force) == 1792, "place of GatherPoints::brute_force");
+static_assert(PLACE_OF(GatherPoints, spare) == 1796, "place of GatherPoints::spare");
 
 struct alignas(4) TileBox {
     Vec3 low;
@@ -1708,17 +1720,17 @@ struct alignas(8) GroupBundles {
     unsigned long long first_block;
     float spacing[2];
 };
-static_assert(sizeof(GroupBundles) == 864, "size of GroupBundles");
+static_assert(sizeof(GroupBundles) == 888, "size of GroupBundles");
 static_assert(PLACE_OF(GroupBundles, scene) == 0, "place of GroupBundles::scene");
 static_assert(PLACE_OF(GroupBundles, rays) == 680, "place of GroupBundles::rays");
-static_assert(PLACE_OF(GroupBundles, hits) == 800, "place of GroupBundles::hits");
-static_assert(PLACE_OF(GroupBundles, members) == 808, "place of GroupBundles::members");
-static_assert(PLACE_OF(GroupBundles, ends) == 816, "place of GroupBundles::ends");
-static_assert(PLACE_OF(GroupBundles, counts) == 824, "place of GroupBundles::counts");
-static_assert(PLACE_OF(GroupBundles, bundles) == 832, "place of GroupBundles::bundles");
-static_assert(PLACE_OF(GroupBundles, tiles) == 840, "place of GroupBundles::tiles");
-static_assert(PLACE_OF(GroupBundles, first_block) == 848, "place of GroupBundles::first_block");
-static_assert(PLACE_OF(GroupBundles, spacing) == 856, "place of GroupBundles::spacing");
+static_assert(PLACE_OF(GroupBundles, hits) == 824, "place of GroupBundles::hits");
+static_assert(PLACE_OF(GroupBundles, members) == 832, "place of GroupBundles::members");
+static_assert(PLACE_OF(GroupBundles, ends) == 840, "place of GroupBundles::ends");
+static_assert(PLACE_OF(GroupBundles, counts) == 848, "place of GroupBundles::counts");
+static_assert(PLACE_OF(GroupBundles, bundles) == 856, "place of GroupBundles::bundles");
+static_assert(PLACE_OF(GroupBundles, tiles) == 864, "place of GroupBundles::tiles");
+static_assert(PLACE_OF(GroupBundles, first_block) == 872, "place of GroupBundles::first_block");
+static_assert(PLACE_OF(GroupBundles, spacing) == 880, "place of GroupBundles::spacing");
 
 struct alignas(4) Weighed {
     unsigned above;
@@ -1753,26 +1765,26 @@ struct alignas(8) Shadows {
     unsigned first_light;
     unsigned end_light;
 };
-static_assert(sizeof(Shadows) == 2248, "size of Shadows");
+static_assert(sizeof(Shadows) == 2272, "size of Shadows");
 static_assert(PLACE_OF(Shadows, scene) == 0, "place of Shadows::scene");
 static_assert(PLACE_OF(Shadows, rays) == 680, "place of Shadows::rays");
-static_assert(PLACE_OF(Shadows, hits) == 800, "place of Shadows::hits");
-static_assert(PLACE_OF(Shadows, members) == 808, "place of Shadows::members");
-static_assert(PLACE_OF(Shadows, bundles) == 816, "place of Shadows::bundles");
-static_assert(PLACE_OF(Shadows, tiles) == 824, "place of Shadows::tiles");
-static_assert(PLACE_OF(Shadows, starts) == 832, "place of Shadows::starts");
-static_assert(PLACE_OF(Shadows, taken) == 840, "place of Shadows::taken");
-static_assert(PLACE_OF(Shadows, share) == 848, "place of Shadows::share");
-static_assert(PLACE_OF(Shadows, weighed) == 856, "place of Shadows::weighed");
-static_assert(PLACE_OF(Shadows, sampling) == 864, "place of Shadows::sampling");
-static_assert(PLACE_OF(Shadows, tally) == 880, "place of Shadows::tally");
-static_assert(PLACE_OF(Shadows, first) == 888, "place of Shadows::first");
-static_assert(PLACE_OF(Shadows, count) == 896, "place of Shadows::count");
-static_assert(PLACE_OF(Shadows, sets) == 904, "place of Shadows::sets");
-static_assert(PLACE_OF(Shadows, set) == 2232, "place of Shadows::set");
-static_assert(PLACE_OF(Shadows, set_count) == 2236, "place of Shadows::set_count");
-static_assert(PLACE_OF(Shadows, first_light) == 2240, "place of Shadows::first_light");
-static_assert(PLACE_OF(Shadows, end_light) == 2244, "place of Shadows::end_light");
+static_assert(PLACE_OF(Shadows, hits) == 824, "place of Shadows::hits");
+static_assert(PLACE_OF(Shadows, members) == 832, "place of Shadows::members");
+static_assert(PLACE_OF(Shadows, bundles) == 840, "place of Shadows::bundles");
+static_assert(PLACE_OF(Shadows, tiles) == 848, "place of Shadows::tiles");
+static_assert(PLACE_OF(Shadows, starts) == 856, "place of Shadows::starts");
+static_assert(PLACE_OF(Shadows, taken) == 864, "place of Shadows::taken");
+static_assert(PLACE_OF(Shadows, share) == 872, "place of Shadows::share");
+static_assert(PLACE_OF(Shadows, weighed) == 880, "place of Shadows::weighed");
+static_assert(PLACE_OF(Shadows, sampling) == 888, "place of Shadows::sampling");
+static_assert(PLACE_OF(Shadows, tally) == 904, "place of Shadows::tally");
+static_assert(PLACE_OF(Shadows, first) == 912, "place of Shadows::first");
+static_assert(PLACE_OF(Shadows, count) == 920, "place of Shadows::count");
+static_assert(PLACE_OF(Shadows, sets) == 928, "place of Shadows::sets");
+static_assert(PLACE_OF(Shadows, set) == 2256, "place of Shadows::set");
+static_assert(PLACE_OF(Shadows, set_count) == 2260, "place of Shadows::set_count");
+static_assert(PLACE_OF(Shadows, first_light) == 2264, "place of Shadows::first_light");
+static_assert(PLACE_OF(Shadows, end_light) == 2268, "place of Shadows::end_light");
 
 struct alignas(8) Transmittance {
     Scene scene;
@@ -1785,16 +1797,16 @@ struct alignas(8) Transmittance {
     unsigned parts;
     unsigned spare;
 };
-static_assert(sizeof(Transmittance) == 2984, "size of Transmittance");
+static_assert(sizeof(Transmittance) == 3008, "size of Transmittance");
 static_assert(PLACE_OF(Transmittance, scene) == 0, "place of Transmittance::scene");
 static_assert(PLACE_OF(Transmittance, shadows) == 680, "place of Transmittance::shadows");
-static_assert(PLACE_OF(Transmittance, triangles) == 2928, "place of Transmittance::triangles");
-static_assert(PLACE_OF(Transmittance, normals) == 2952, "place of Transmittance::normals");
-static_assert(PLACE_OF(Transmittance, passed) == 2960, "place of Transmittance::passed");
-static_assert(PLACE_OF(Transmittance, middle) == 2968, "place of Transmittance::middle");
-static_assert(PLACE_OF(Transmittance, level) == 2972, "place of Transmittance::level");
-static_assert(PLACE_OF(Transmittance, parts) == 2976, "place of Transmittance::parts");
-static_assert(PLACE_OF(Transmittance, spare) == 2980, "place of Transmittance::spare");
+static_assert(PLACE_OF(Transmittance, triangles) == 2952, "place of Transmittance::triangles");
+static_assert(PLACE_OF(Transmittance, normals) == 2976, "place of Transmittance::normals");
+static_assert(PLACE_OF(Transmittance, passed) == 2984, "place of Transmittance::passed");
+static_assert(PLACE_OF(Transmittance, middle) == 2992, "place of Transmittance::middle");
+static_assert(PLACE_OF(Transmittance, level) == 2996, "place of Transmittance::level");
+static_assert(PLACE_OF(Transmittance, parts) == 3000, "place of Transmittance::parts");
+static_assert(PLACE_OF(Transmittance, spare) == 3004, "place of Transmittance::spare");
 
 struct alignas(8) AdaptiveShadows {
     Scene scene;
@@ -1809,18 +1821,18 @@ struct alignas(8) AdaptiveShadows {
     unsigned tiles;
     unsigned spare;
 };
-static_assert(sizeof(AdaptiveShadows) == 3384, "size of AdaptiveShadows");
+static_assert(sizeof(AdaptiveShadows) == 3408, "size of AdaptiveShadows");
 static_assert(PLACE_OF(AdaptiveShadows, scene) == 0, "place of AdaptiveShadows::scene");
 static_assert(PLACE_OF(AdaptiveShadows, shadows) == 680, "place of AdaptiveShadows::shadows");
-static_assert(PLACE_OF(AdaptiveShadows, answers) == 2928, "place of AdaptiveShadows::answers");
-static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2936, "place of AdaptiveShadows::answer_count");
-static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2944, "place of AdaptiveShadows::first_answer");
-static_assert(PLACE_OF(AdaptiveShadows, counts) == 2952, "place of AdaptiveShadows::counts");
-static_assert(PLACE_OF(AdaptiveShadows, entries) == 2960, "place of AdaptiveShadows::entries");
-static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2968, "place of AdaptiveShadows::entry_count");
-static_assert(PLACE_OF(AdaptiveShadows, places) == 2976, "place of AdaptiveShadows::places");
-static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3376, "place of AdaptiveShadows::tiles");
-static_assert(PLACE_OF(AdaptiveShadows, spare) == 3380, "place of AdaptiveShadows::spare");
+static_assert(PLACE_OF(AdaptiveShadows, answers) == 2952, "place of AdaptiveShadows::answers");
+static_assert(PLACE_OF(AdaptiveShadows, answer_count) == 2960, "place of AdaptiveShadows::answer_count");
+static_assert(PLACE_OF(AdaptiveShadows, first_answer) == 2968, "place of AdaptiveShadows::first_answer");
+static_assert(PLACE_OF(AdaptiveShadows, counts) == 2976, "place of AdaptiveShadows::counts");
+static_assert(PLACE_OF(AdaptiveShadows, entries) == 2984, "place of AdaptiveShadows::entries");
+static_assert(PLACE_OF(AdaptiveShadows, entry_count) == 2992, "place of AdaptiveShadows::entry_count");
+static_assert(PLACE_OF(AdaptiveShadows, places) == 3000, "place of AdaptiveShadows::places");
+static_assert(PLACE_OF(AdaptiveShadows, tiles) == 3400, "place of AdaptiveShadows::tiles");
+static_assert(PLACE_OF(AdaptiveShadows, spare) == 3404, "place of AdaptiveShadows::spare");
 
 struct alignas(8) PrimaryRays {
     Scene scene;
@@ -1829,12 +1841,12 @@ struct alignas(8) PrimaryRays {
     Tally tally;
     unsigned long long first_block;
 };
-static_assert(sizeof(PrimaryRays) == 824, "size of PrimaryRays");
+static_assert(sizeof(PrimaryRays) == 848, "size of PrimaryRays");
 static_assert(PLACE_OF(PrimaryRays, scene) == 0, "place of PrimaryRays::scene");
 static_assert(PLACE_OF(PrimaryRays, rays) == 680, "place of PrimaryRays::rays");
-static_assert(PLACE_OF(PrimaryRays, hits) == 800, "place of PrimaryRays::hits");
-static_assert(PLACE_OF(PrimaryRays, tally) == 808, "place of PrimaryRays::tally");
-static_assert(PLACE_OF(PrimaryRays, first_block) == 816, "place of PrimaryRays::first_block");
+static_assert(PLACE_OF(PrimaryRays, hits) == 824, "place of PrimaryRays::hits");
+static_assert(PLACE_OF(PrimaryRays, tally) == 832, "place of PrimaryRays::tally");
+static_assert(PLACE_OF(PrimaryRays, first_block) == 840, "place of PrimaryRays::first_block");
 
 struct alignas(8) ShadowRays {
     Scene scene;
@@ -1846,15 +1858,15 @@ struct alignas(8) ShadowRays {
     unsigned first_light;
     unsigned light_count;
 };
-static_assert(sizeof(ShadowRays) == 840, "size of ShadowRays");
+static_assert(sizeof(ShadowRays) == 864, "size of ShadowRays");
 static_assert(PLACE_OF(ShadowRays, scene) == 0, "place of ShadowRays::scene");
 static_assert(PLACE_OF(ShadowRays, rays) == 680, "place of ShadowRays::rays");
-static_assert(PLACE_OF(ShadowRays, hits) == 800, "place of ShadowRays::hits");
-static_assert(PLACE_OF(ShadowRays, share) == 808, "place of ShadowRays::share");
-static_assert(PLACE_OF(ShadowRays, tally) == 816, "place of ShadowRays::tally");
-static_assert(PLACE_OF(ShadowRays, first_block) == 824, "place of ShadowRays::first_block");
-static_assert(PLACE_OF(ShadowRays, first_light) == 832, "place of ShadowRays::first_light");
-static_assert(PLACE_OF(ShadowRays, light_count) == 836, "place of ShadowRays::light_count");
+static_assert(PLACE_OF(ShadowRays, hits) == 824, "place of ShadowRays::hits");
+static_assert(PLACE_OF(ShadowRays, share) == 832, "place of ShadowRays::share");
+static_assert(PLACE_OF(ShadowRays, tally) == 840, "place of ShadowRays::tally");
+static_assert(PLACE_OF(ShadowRays, first_block) == 848, "place of ShadowRays::first_block");
+static_assert(PLACE_OF(ShadowRays, first_light) == 856, "place of ShadowRays::first_light");
+static_assert(PLACE_OF(ShadowRays, light_count) == 860, "place of ShadowRays::light_count");
 
 struct alignas(8) Shade {
     Scene scene;
@@ -1889,38 +1901,38 @@ struct alignas(8) Shade {
     unsigned catches;
     unsigned weighed;
 };
-static_assert(sizeof(Shade) == 1000, "size of Shade");
+static_assert(sizeof(Shade) == 1024, "size of Shade");
 static_assert(PLACE_OF(Shade, scene) == 0, "place of Shade::scene");
 static_assert(PLACE_OF(Shade, rays) == 680, "place of Shade::rays");
-static_assert(PLACE_OF(Shade, hits) == 800, "place of Shade::hits");
-static_assert(PLACE_OF(Shade, share) == 808, "place of Shade::share");
-static_assert(PLACE_OF(Shade, passed) == 816, "place of Shade::passed");
-static_assert(PLACE_OF(Shade, used) == 824, "place of Shade::used");
-static_assert(PLACE_OF(Shade, gathered) == 832, "place of Shade::gathered");
-static_assert(PLACE_OF(Shade, film_pixel) == 840, "place of Shade::film_pixel");
-static_assert(PLACE_OF(Shade, color) == 848, "place of Shade::color");
-static_assert(PLACE_OF(Shade, sums) == 856, "place of Shade::sums");
-static_assert(PLACE_OF(Shade, caught) == 864, "place of Shade::caught");
-static_assert(PLACE_OF(Shade, ray_caught) == 872, "place of Shade::ray_caught");
-static_assert(PLACE_OF(Shade, samples) == 880, "place of Shade::samples");
-static_assert(PLACE_OF(Shade, depth) == 888, "place of Shade::depth");
-static_assert(PLACE_OF(Shade, normal) == 896, "place of Shade::normal");
-static_assert(PLACE_OF(Shade, position) == 904, "place of Shade::position");
-static_assert(PLACE_OF(Shade, visibility) == 912, "place of Shade::visibility");
-static_assert(PLACE_OF(Shade, light_points) == 920, "place of Shade::light_points");
-static_assert(PLACE_OF(Shade, light_groups) == 928, "place of Shade::light_groups");
-static_assert(PLACE_OF(Shade, ids) == 936, "place of Shade::ids");
-static_assert(PLACE_OF(Shade, film_pixels) == 944, "place of Shade::film_pixels");
-static_assert(PLACE_OF(Shade, first_block) == 952, "place of Shade::first_block");
-static_assert(PLACE_OF(Shade, first_light) == 960, "place of Shade::first_light");
-static_assert(PLACE_OF(Shade, end_light) == 964, "place of Shade::end_light");
-static_assert(PLACE_OF(Shade, several) == 968, "place of Shade::several");
-static_assert(PLACE_OF(Shade, sampled) == 972, "place of Shade::sampled");
-static_assert(PLACE_OF(Shade, sample_count) == 976, "place of Shade::sample_count");
-static_assert(PLACE_OF(Shade, first_sampled) == 980, "place of Shade::first_sampled");
-static_assert(PLACE_OF(Shade, sampled_pixels) == 984, "place of Shade::sampled_pixels");
-static_assert(PLACE_OF(Shade, catches) == 992, "place of Shade::catches");
-static_assert(PLACE_OF(Shade, weighed) == 996, "place of Shade::weighed");
+static_assert(PLACE_OF(Shade, hits) == 824, "place of Shade::hits");
+static_assert(PLACE_OF(Shade, share) == 832, "place of Shade::share");
+static_assert(PLACE_OF(Shade, passed) == 840, "place of Shade::passed");
+static_assert(PLACE_OF(Shade, used) == 848, "place of Shade::used");
+static_assert(PLACE_OF(Shade, gathered) == 856, "place of Shade::gathered");
+static_assert(PLACE_OF(Shade, film_pixel) == 864, "place of Shade::film_pixel");
+static_assert(PLACE_OF(Shade, color) == 872, "place of Shade::color");
+static_assert(PLACE_OF(Shade, sums) == 880, "place of Shade::sums");
+static_assert(PLACE_OF(Shade, caught) == 888, "place of Shade::caught");
+static_assert(PLACE_OF(Shade, ray_caught) == 896, "place of Shade::ray_caught");
+static_assert(PLACE_OF(Shade, samples) == 904, "place of Shade::samples");
+static_assert(PLACE_OF(Shade, depth) == 912, "place of Shade::depth");
+static_assert(PLACE_OF(Shade, normal) == 920, "place of Shade::normal");
+static_assert(PLACE_OF(Shade, position) == 928, "place of Shade::position");
+static_assert(PLACE_OF(Shade, visibility) == 936, "place of Shade::visibility");
+static_assert(PLACE_OF(Shade, light_points) == 944, "place of Shade::light_points");
+static_assert(PLACE_OF(Shade, light_groups) == 952, "place of Shade::light_groups");
+static_assert(PLACE_OF(Shade, ids) == 960, "place of Shade::ids");
+static_assert(PLACE_OF(Shade, film_pixels) == 968, "place of Shade::film_pixels");
+static_assert(PLACE_OF(Shade, first_block) == 976, "place of Shade::first_block");
+static_assert(PLACE_OF(Shade, first_light) == 984, "place of Shade::first_light");
+static_assert(PLACE_OF(Shade, end_light) == 988, "place of Shade::end_light");
+static_assert(PLACE_OF(Shade, several) == 992, "place of Shade::several");
+static_assert(PLACE_OF(Shade, sampled) == 996, "place of Shade::sampled");
+static_assert(PLACE_OF(Shade, sample_count) == 1000, "place of Shade::sample_count");
+static_assert(PLACE_OF(Shade, first_sampled) == 1004, "place of Shade::first_sampled");
+static_assert(PLACE_OF(Shade, sampled_pixels) == 1008, "place of Shade::sampled_pixels");
+static_assert(PLACE_OF(Shade, catches) == 1016, "place of Shade::catches");
+static_assert(PLACE_OF(Shade, weighed) == 1020, "place of Shade::weighed");
 
 struct alignas(8) PixelSamples {
     Scene scene;
@@ -1962,45 +1974,45 @@ struct alignas(8) PixelSamples {
     unsigned matte_slots;
     float quantiles[64];
 };
-static_assert(sizeof(PixelSamples) == 1344, "size of PixelSamples");
+static_assert(sizeof(PixelSamples) == 1368, "size of PixelSamples");
 static_assert(PLACE_OF(PixelSamples, scene) == 0, "place of PixelSamples::scene");
 static_assert(PLACE_OF(PixelSamples, rays) == 680, "place of PixelSamples::rays");
-static_assert(PLACE_OF(PixelSamples, hits) == 800, "place of PixelSamples::hits");
-static_assert(PLACE_OF(PixelSamples, centers) == 808, "place of PixelSamples::centers");
-static_assert(PLACE_OF(PixelSamples, state) == 816, "place of PixelSamples::state");
-static_assert(PLACE_OF(PixelSamples, owners) == 824, "place of PixelSamples::owners");
-static_assert(PLACE_OF(PixelSamples, color) == 832, "place of PixelSamples::color");
-static_assert(PLACE_OF(PixelSamples, counts) == 840, "place of PixelSamples::counts");
-static_assert(PLACE_OF(PixelSamples, fragments) == 864, "place of PixelSamples::fragments");
-static_assert(PLACE_OF(PixelSamples, fragment_hits) == 888, "place of PixelSamples::fragment_hits");
-static_assert(PLACE_OF(PixelSamples, coverage) == 912, "place of PixelSamples::coverage");
-static_assert(PLACE_OF(PixelSamples, caught) == 920, "place of PixelSamples::caught");
-static_assert(PLACE_OF(PixelSamples, depth) == 928, "place of PixelSamples::depth");
-static_assert(PLACE_OF(PixelSamples, normal) == 936, "place of PixelSamples::normal");
-static_assert(PLACE_OF(PixelSamples, position) == 944, "place of PixelSamples::position");
-static_assert(PLACE_OF(PixelSamples, visibility) == 952, "place of PixelSamples::visibility");
-static_assert(PLACE_OF(PixelSamples, light_points) == 960, "place of PixelSamples::light_points");
-static_assert(PLACE_OF(PixelSamples, light_groups) == 968, "place of PixelSamples::light_groups");
-static_assert(PLACE_OF(PixelSamples, ids) == 976, "place of PixelSamples::ids");
-static_assert(PLACE_OF(PixelSamples, mattes) == 984, "place of PixelSamples::mattes");
-static_assert(PLACE_OF(PixelSamples, tally) == 992, "place of PixelSamples::tally");
-static_assert(PLACE_OF(PixelSamples, first_block) == 1000, "place of PixelSamples::first_block");
-static_assert(PLACE_OF(PixelSamples, seed) == 1008, "place of PixelSamples::seed");
-static_assert(PLACE_OF(PixelSamples, film_pixels) == 1016, "place of PixelSamples::film_pixels");
-static_assert(PLACE_OF(PixelSamples, spacing) == 1024, "place of PixelSamples::spacing");
-static_assert(PLACE_OF(PixelSamples, samples) == 1032, "place of PixelSamples::samples");
-static_assert(PLACE_OF(PixelSamples, inner) == 1040, "place of PixelSamples::inner");
-static_assert(PLACE_OF(PixelSamples, all_samples) == 1048, "place of PixelSamples::all_samples");
-static_assert(PLACE_OF(PixelSamples, together) == 1052, "place of PixelSamples::together");
-static_assert(PLACE_OF(PixelSamples, lanes) == 1056, "place of PixelSamples::lanes");
-static_assert(PLACE_OF(PixelSamples, light_count) == 1060, "place of PixelSamples::light_count");
-static_assert(PLACE_OF(PixelSamples, weight) == 1064, "place of PixelSamples::weight");
-static_assert(PLACE_OF(PixelSamples, contrast) == 1068, "place of PixelSamples::contrast");
-static_assert(PLACE_OF(PixelSamples, apart) == 1072, "place of PixelSamples::apart");
-static_assert(PLACE_OF(PixelSamples, mirrors) == 1076, "place of PixelSamples::mirrors");
-static_assert(PLACE_OF(PixelSamples, keeps) == 1080, "place of PixelSamples::keeps");
-static_assert(PLACE_OF(PixelSamples, matte_slots) == 1084, "place of PixelSamples::matte_slots");
-static_assert(PLACE_OF(PixelSamples, quantiles) == 1088, "place of PixelSamples::quantiles");
+static_assert(PLACE_OF(PixelSamples, hits) == 824, "place of PixelSamples::hits");
+static_assert(PLACE_OF(PixelSamples, centers) == 832, "place of PixelSamples::centers");
+static_assert(PLACE_OF(PixelSamples, state) == 840, "place of PixelSamples::state");
+static_assert(PLACE_OF(PixelSamples, owners) == 848, "place of PixelSamples::owners");
+static_assert(PLACE_OF(PixelSamples, color) == 856, "place of PixelSamples::color");
+static_assert(PLACE_OF(PixelSamples, counts) == 864, "place of PixelSamples::counts");
+static_assert(PLACE_OF(PixelSamples, fragments) == 888, "place of PixelSamples::fragments");
+static_assert(PLACE_OF(PixelSamples, fragment_hits) == 912, "place of PixelSamples::fragment_hits");
+static_assert(PLACE_OF(PixelSamples, coverage) == 936, "place of PixelSamples::coverage");
+static_assert(PLACE_OF(PixelSamples, caught) == 944, "place of PixelSamples::caught");
+static_assert(PLACE_OF(PixelSamples, depth) == 952, "place of PixelSamples::depth");
+static_assert(PLACE_OF(PixelSamples, normal) == 960, "place of PixelSamples::normal");
+static_assert(PLACE_OF(PixelSamples, position) == 968, "place of PixelSamples::position");
+static_assert(PLACE_OF(PixelSamples, visibility) == 976, "place of PixelSamples::visibility");
+static_assert(PLACE_OF(PixelSamples, light_points) == 984, "place of PixelSamples::light_points");
+static_assert(PLACE_OF(PixelSamples, light_groups) == 992, "place of PixelSamples::light_groups");
+static_assert(PLACE_OF(PixelSamples, ids) == 1000, "place of PixelSamples::ids");
+static_assert(PLACE_OF(PixelSamples, mattes) == 1008, "place of PixelSamples::mattes");
+static_assert(PLACE_OF(PixelSamples, tally) == 1016, "place of PixelSamples::tally");
+static_assert(PLACE_OF(PixelSamples, first_block) == 1024, "place of PixelSamples::first_block");
+static_assert(PLACE_OF(PixelSamples, seed) == 1032, "place of PixelSamples::seed");
+static_assert(PLACE_OF(PixelSamples, film_pixels) == 1040, "place of PixelSamples::film_pixels");
+static_assert(PLACE_OF(PixelSamples, spacing) == 1048, "place of PixelSamples::spacing");
+static_assert(PLACE_OF(PixelSamples, samples) == 1056, "place of PixelSamples::samples");
+static_assert(PLACE_OF(PixelSamples, inner) == 1064, "place of PixelSamples::inner");
+static_assert(PLACE_OF(PixelSamples, all_samples) == 1072, "place of PixelSamples::all_samples");
+static_assert(PLACE_OF(PixelSamples, together) == 1076, "place of PixelSamples::together");
+static_assert(PLACE_OF(PixelSamples, lanes) == 1080, "place of PixelSamples::lanes");
+static_assert(PLACE_OF(PixelSamples, light_count) == 1084, "place of PixelSamples::light_count");
+static_assert(PLACE_OF(PixelSamples, weight) == 1088, "place of PixelSamples::weight");
+static_assert(PLACE_OF(PixelSamples, contrast) == 1092, "place of PixelSamples::contrast");
+static_assert(PLACE_OF(PixelSamples, apart) == 1096, "place of PixelSamples::apart");
+static_assert(PLACE_OF(PixelSamples, mirrors) == 1100, "place of PixelSamples::mirrors");
+static_assert(PLACE_OF(PixelSamples, keeps) == 1104, "place of PixelSamples::keeps");
+static_assert(PLACE_OF(PixelSamples, matte_slots) == 1108, "place of PixelSamples::matte_slots");
+static_assert(PLACE_OF(PixelSamples, quantiles) == 1112, "place of PixelSamples::quantiles");
 
 struct alignas(8) MirrorRays {
     Scene scene;
@@ -2014,17 +2026,17 @@ struct alignas(8) MirrorRays {
     ListedRay *onward;
     Cone *cones;
 };
-static_assert(sizeof(MirrorRays) == 864, "size of MirrorRays");
+static_assert(sizeof(MirrorRays) == 888, "size of MirrorRays");
 static_assert(PLACE_OF(MirrorRays, scene) == 0, "place of MirrorRays::scene");
 static_assert(PLACE_OF(MirrorRays, rays) == 680, "place of MirrorRays::rays");
-static_assert(PLACE_OF(MirrorRays, hits) == 800, "place of MirrorRays::hits");
-static_assert(PLACE_OF(MirrorRays, counts) == 808, "place of MirrorRays::counts");
-static_assert(PLACE_OF(MirrorRays, thin) == 816, "place of MirrorRays::thin");
-static_assert(PLACE_OF(MirrorRays, per_ray) == 824, "place of MirrorRays::per_ray");
-static_assert(PLACE_OF(MirrorRays, seed) == 832, "place of MirrorRays::seed");
-static_assert(PLACE_OF(MirrorRays, pixel_samples) == 840, "place of MirrorRays::pixel_samples");
-static_assert(PLACE_OF(MirrorRays, onward) == 848, "place of MirrorRays::onward");
-static_assert(PLACE_OF(MirrorRays, cones) == 856, "place of MirrorRays::cones");
+static_assert(PLACE_OF(MirrorRays, hits) == 824, "place of MirrorRays::hits");
+static_assert(PLACE_OF(MirrorRays, counts) == 832, "place of MirrorRays::counts");
+static_assert(PLACE_OF(MirrorRays, thin) == 840, "place of MirrorRays::thin");
+static_assert(PLACE_OF(MirrorRays, per_ray) == 848, "place of MirrorRays::per_ray");
+static_assert(PLACE_OF(MirrorRays, seed) == 856, "place of MirrorRays::seed");
+static_assert(PLACE_OF(MirrorRays, pixel_samples) == 864, "place of MirrorRays::pixel_samples");
+static_assert(PLACE_OF(MirrorRays, onward) == 872, "place of MirrorRays::onward");
+static_assert(PLACE_OF(MirrorRays, cones) == 880, "place of MirrorRays::cones");
 
 struct alignas(8) MergedRays {
     Scene scene;
@@ -2037,16 +2049,16 @@ struct alignas(8) MergedRays {
     Cone *cones;
     float spacing[2];
 };
-static_assert(sizeof(MergedRays) == 856, "size of MergedRays");
+static_assert(sizeof(MergedRays) == 880, "size of MergedRays");
 static_assert(PLACE_OF(MergedRays, scene) == 0, "place of MergedRays::scene");
 static_assert(PLACE_OF(MergedRays, rays) == 680, "place of MergedRays::rays");
-static_assert(PLACE_OF(MergedRays, hits) == 800, "place of MergedRays::hits");
-static_assert(PLACE_OF(MergedRays, merged) == 808, "place of MergedRays::merged");
-static_assert(PLACE_OF(MergedRays, counts) == 816, "place of MergedRays::counts");
-static_assert(PLACE_OF(MergedRays, left) == 824, "place of MergedRays::left");
-static_assert(PLACE_OF(MergedRays, left_hits) == 832, "place of MergedRays::left_hits");
-static_assert(PLACE_OF(MergedRays, cones) == 840, "place of MergedRays::cones");
-static_assert(PLACE_OF(MergedRays, spacing) == 848, "place of MergedRays::spacing");
+static_assert(PLACE_OF(MergedRays, hits) == 824, "place of MergedRays::hits");
+static_assert(PLACE_OF(MergedRays, merged) == 832, "place of MergedRays::merged");
+static_assert(PLACE_OF(MergedRays, counts) == 840, "place of MergedRays::counts");
+static_assert(PLACE_OF(MergedRays, left) == 848, "place of MergedRays::left");
+static_assert(PLACE_OF(MergedRays, left_hits) == 856, "place of MergedRays::left_hits");
+static_assert(PLACE_OF(MergedRays, cones) == 864, "place of MergedRays::cones");
+static_assert(PLACE_OF(MergedRays, spacing) == 872, "place of MergedRays::spacing");
 
 struct alignas(8) GroupCells {
     Scene scene;
@@ -2059,16 +2071,16 @@ struct alignas(8) GroupCells {
     Bundle *bundles;
     unsigned long long first_block;
 };
-static_assert(sizeof(GroupCells) == 928, "size of GroupCells");
+static_assert(sizeof(GroupCells) == 952, "size of GroupCells");
 static_assert(PLACE_OF(GroupCells, scene) == 0, "place of GroupCells::scene");
 static_assert(PLACE_OF(GroupCells, rays) == 680, "place of GroupCells::rays");
-static_assert(PLACE_OF(GroupCells, hits) == 800, "place of GroupCells::hits");
-static_assert(PLACE_OF(GroupCells, mesh) == 808, "place of GroupCells::mesh");
-static_assert(PLACE_OF(GroupCells, members) == 888, "place of GroupCells::members");
-static_assert(PLACE_OF(GroupCells, tile_bundles) == 896, "place of GroupCells::tile_bundles");
-static_assert(PLACE_OF(GroupCells, counts) == 904, "place of GroupCells::counts");
-static_assert(PLACE_OF(GroupCells, bundles) == 912, "place of GroupCells::bundles");
-static_assert(PLACE_OF(GroupCells, first_block) == 920, "place of GroupCells::first_block");
+static_assert(PLACE_OF(GroupCells, hits) == 824, "place of GroupCells::hits");
+static_assert(PLACE_OF(GroupCells, mesh) == 832, "place of GroupCells::mesh");
+static_assert(PLACE_OF(GroupCells, members) == 912, "place of GroupCells::members");
+static_assert(PLACE_OF(GroupCells, tile_bundles) == 920, "place of GroupCells::tile_bundles");
+static_assert(PLACE_OF(GroupCells, counts) == 928, "place of GroupCells::counts");
+static_assert(PLACE_OF(GroupCells, bundles) == 936, "place of GroupCells::bundles");
+static_assert(PLACE_OF(GroupCells, first_block) == 944, "place of GroupCells::first_block");
 
 struct alignas(8) ShortTests {
     Scene scene;
@@ -2082,17 +2094,17 @@ struct alignas(8) ShortTests {
     unsigned long long first_bundle;
     unsigned long long bundle_count;
 };
-static_assert(sizeof(ShortTests) == 936, "size of ShortTests");
+static_assert(sizeof(ShortTests) == 960, "size of ShortTests");
 static_assert(PLACE_OF(ShortTests, scene) == 0, "place of ShortTests::scene");
 static_assert(PLACE_OF(ShortTests, rays) == 680, "place of ShortTests::rays");
-static_assert(PLACE_OF(ShortTests, hits) == 800, "place of ShortTests::hits");
-static_assert(PLACE_OF(ShortTests, mesh) == 808, "place of ShortTests::mesh");
-static_assert(PLACE_OF(ShortTests, members) == 888, "place of ShortTests::members");
-static_assert(PLACE_OF(ShortTests, bundles) == 896, "place of ShortTests::bundles");
-static_assert(PLACE_OF(ShortTests, masks) == 904, "place of ShortTests::masks");
-static_assert(PLACE_OF(ShortTests, tally) == 912, "place of ShortTests::tally");
-static_assert(PLACE_OF(ShortTests, first_bundle) == 920, "place of ShortTests::first_bundle");
-static_assert(PLACE_OF(ShortTests, bundle_count) == 928, "place of ShortTests::bundle_count");
+static_assert(PLACE_OF(ShortTests, hits) == 824, "place of ShortTests::hits");
+static_assert(PLACE_OF(ShortTests, mesh) == 832, "place of ShortTests::mesh");
+static_assert(PLACE_OF(ShortTests, members) == 912, "place of ShortTests::members");
+static_assert(PLACE_OF(ShortTests, bundles) == 920, "place of ShortTests::bundles");
+static_assert(PLACE_OF(ShortTests, masks) == 928, "place of ShortTests::masks");
+static_assert(PLACE_OF(ShortTests, tally) == 936, "place of ShortTests::tally");
+static_assert(PLACE_OF(ShortTests, first_bundle) == 944, "place of ShortTests::first_bundle");
+static_assert(PLACE_OF(ShortTests, bundle_count) == 952, "place of ShortTests::bundle_count");
 
 struct alignas(8) LightPoints {
     LightMesh mesh;
@@ -2198,25 +2210,25 @@ struct alignas(8) Interpolate {
     unsigned long long first;
     unsigned long long count;
 };
-static_assert(sizeof(Interpolate) == 1040, "size of Interpolate");
+static_assert(sizeof(Interpolate) == 1064, "size of Interpolate");
 static_assert(PLACE_OF(Interpolate, scene) == 0, "place of Interpolate::scene");
 static_assert(PLACE_OF(Interpolate, rays) == 680, "place of Interpolate::rays");
-static_assert(PLACE_OF(Interpolate, hits) == 800, "place of Interpolate::hits");
-static_assert(PLACE_OF(Interpolate, mesh) == 808, "place of Interpolate::mesh");
-static_assert(PLACE_OF(Interpolate, members) == 888, "place of Interpolate::members");
-static_assert(PLACE_OF(Interpolate, bundles) == 896, "place of Interpolate::bundles");
-static_assert(PLACE_OF(Interpolate, masks) == 904, "place of Interpolate::masks");
-static_assert(PLACE_OF(Interpolate, points) == 912, "place of Interpolate::points");
-static_assert(PLACE_OF(Interpolate, slots) == 952, "place of Interpolate::slots");
-static_assert(PLACE_OF(Interpolate, lit) == 960, "place of Interpolate::lit");
-static_assert(PLACE_OF(Interpolate, share) == 968, "place of Interpolate::share");
-static_assert(PLACE_OF(Interpolate, used) == 976, "place of Interpolate::used");
-static_assert(PLACE_OF(Interpolate, fallback_rays) == 984, "place of Interpolate::fallback_rays");
-static_assert(PLACE_OF(Interpolate, fallback_count) == 992, "place of Interpolate::fallback_count");
-static_assert(PLACE_OF(Interpolate, sampling) == 1000, "place of Interpolate::sampling");
-static_assert(PLACE_OF(Interpolate, tally) == 1016, "place of Interpolate::tally");
-static_assert(PLACE_OF(Interpolate, first) == 1024, "place of Interpolate::first");
-static_assert(PLACE_OF(Interpolate, count) == 1032, "place of Interpolate::count");
+static_assert(PLACE_OF(Interpolate, hits) == 824, "place of Interpolate::hits");
+static_assert(PLACE_OF(Interpolate, mesh) == 832, "place of Interpolate::mesh");
+static_assert(PLACE_OF(Interpolate, members) == 912, "place of Interpolate::members");
+static_assert(PLACE_OF(Interpolate, bundles) == 920, "place of Interpolate::bundles");
+static_assert(PLACE_OF(Interpolate, masks) == 928, "place of Interpolate::masks");
+static_assert(PLACE_OF(Interpolate, points) == 936, "place of Interpolate::points");
+static_assert(PLACE_OF(Interpolate, slots) == 976, "place of Interpolate::slots");
+static_assert(PLACE_OF(Interpolate, lit) == 984, "place of Interpolate::lit");
+static_assert(PLACE_OF(Interpolate, share) == 992, "place of Interpolate::share");
+static_assert(PLACE_OF(Interpolate, used) == 1000, "place of Interpolate::used");
+static_assert(PLACE_OF(Interpolate, fallback_rays) == 1008, "place of Interpolate::fallback_rays");
+static_assert(PLACE_OF(Interpolate, fallback_count) == 1016, "place of Interpolate::fallback_count");
+static_assert(PLACE_OF(Interpolate, sampling) == 1024, "place of Interpolate::sampling");
+static_assert(PLACE_OF(Interpolate, tally) == 1040, "place of Interpolate::tally");
+static_assert(PLACE_OF(Interpolate, first) == 1048, "place of Interpolate::first");
+static_assert(PLACE_OF(Interpolate, count) == 1056, "place of Interpolate::count");
 
 struct alignas(8) Scan {
     unsigned *values;

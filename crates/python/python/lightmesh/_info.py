@@ -50,6 +50,8 @@ class CameraInfo(_Camera, total=False):
     hfov: float
     height: float
     shift: list[float]
+    near: float
+    far: float
 
 
 class UpInfo(TypedDict):
@@ -118,6 +120,8 @@ class CameraStats(_CameraStats, total=False):
     """The camera, world coordinates."""
 
     shift: list[float]
+    near: float
+    far: float
 
 
 class LatticeStats(TypedDict):

@@ -251,7 +251,8 @@ class Camera:
     """A camera at `position` that looks at `target`, or along `direction`. `vfov` or `hfov` is the full vertical or horizontal field of view,
     degrees (45° vertical if none is given); `height` in their place makes it orthographic: the image is as high in scene units. `shift` moves
     the image, to the right and up, by shares of its height, as a shifted lens does: parallels stay parallel. `up` is what is up in the image, and
-    `name` what `camera_name` calls it."""
+    `name` what `camera_name` calls it. Surfaces and lights are seen from the depth `near` up to the depth `far`, distances along the view
+    direction in scene units; shadows, mirrors and the sky stay."""
 
     def __new__(
         cls,
@@ -265,6 +266,8 @@ class Camera:
         height: float | None = None,
         shift: tuple[float, float] = (0.0, 0.0),
         name: str = "",
+        near: float = 0.0,
+        far: float | None = None,
     ) -> Self: ...
     @property
     def name(self) -> str:

@@ -63,7 +63,7 @@ class _Image(TypedDict, total=False):
     size: tuple[int, int] | str | None
     """Set width and height in pixels [default: 1024x1024]"""
     crop: tuple[int, int, int, int] | str | None
-    """Render only this part: column and row of its first pixel, width and height; its pixels stay the same [default: the whole image]"""
+    """Render only this part: column and row of its first pixel, width and height; its pixels stay the same. Beyond the edges, also to the left of column 0 and above row 0, the view goes on [default: the whole image]"""
     background: _Color | str | None
     """Set the background: one number, r,g,b, '#rrggbb' (sRGB) or transparent, which gives png and exr files an alpha channel [default: the scene's, else black or the studio's]"""
     ground: bool | None

@@ -5,6 +5,7 @@
 
 pub(crate) mod bundles;
 pub(crate) mod cells;
+pub(crate) mod clip;
 pub(crate) mod light_point_visibility;
 pub(crate) mod lights;
 pub(crate) mod masks;

@@ -48,17 +48,39 @@ DEVICE Ray ray_towards(const View &view, float x, float y) {
     return Ray{view.origin + aside, view.forward, INFINITE};
 }
 
-// The column (axis 0) or row (axis 1) in the image of a pixel of the window.
-DEVICE unsigned place_in_image(const View &view, unsigned pixel, unsigned axis) {
-    return (axis == 0 ? pixel % view.size[0] : pixel / view.size[0]) + view.first[axis];
+// The column (axis 0) or row (axis 1) in the image of a pixel of the window; negative to the left of it and above.
+DEVICE int place_in_image(const View &view, unsigned pixel, unsigned axis) {
+    return (int)(axis == 0 ? pixel % view.size[0] : pixel / view.size[0]) + view.first[axis];
+}
+
+// Where a column or row of the image lies among the `step` that repeat from its first one on, in both directions.
+DEVICE unsigned place_in_step(int place, unsigned step) {
+    const int rest = place % (int)step;
+    return (unsigned)(rest < 0 ? rest + (int)step : rest);
+}
+
+// Whether a place is in the image.
+DEVICE bool is_in_image(const View &view, int x, int y) { return (unsigned)x < view.whole[0] && (unsigned)y < view.whole[1]; }
+
+// Whether some pixels of the window are not.
+DEVICE bool leaves_image(const View &view) {
+    const int right = view.first[0] + (int)view.size[0] - 1, bottom = view.first[1] + (int)view.size[1] - 1;
+    return !(is_in_image(view, view.first[0], view.first[1]) && is_in_image(view, right, bottom));
+}
+
+// Whether a pixel of the window is in the image and another one, `x` to the right and `y` down, is not: the first does not depend on it.
+DEVICE bool is_beyond(const View &view, unsigned pixel, int x, int y) {
+    const int column = place_in_image(view, pixel, 0), row = place_in_image(view, pixel, 1);
+    return is_in_image(view, column, row) && !is_in_image(view, column + x, row + y);
 }
 
 // The number in the image of a pixel of the window.
 DEVICE unsigned number_in_image(const View &view, unsigned pixel) {
-    // Given points have no window.
-    if (view.size[0] == view.whole[0])
-        return view.first[1] * view.whole[0] + pixel;
-    return place_in_image(view, pixel, 1) * view.whole[0] + place_in_image(view, pixel, 0);
+    // All of an image. Given points have no window.
+    if (view.first[0] == 0 && view.first[1] == 0 && view.size[0] == view.whole[0] && view.size[1] <= view.whole[1])
+        return pixel;
+    const int x = place_in_image(view, pixel, 0), y = place_in_image(view, pixel, 1);
+    return is_in_image(view, x, y) ? (unsigned)y * view.whole[0] + (unsigned)x : OUTSIDE + ((unsigned)y << OUTSIDE_BITS) + (unsigned)x;
 }
 
 // The centre of a pixel along an axis, in pixels from that of the image.

@@ -9,6 +9,7 @@ use lightmesh_layout::constants::{
 use lightmesh_trace::accel::{Hit, Ray, Triangle};
 
 use crate::antialiasing::Antialiasing;
+use crate::data::clip::{Clip, Limits};
 use crate::footprint::Cone;
 use crate::prepared::PreparedScene;
 use crate::surface::SurfacePoint;
@@ -60,6 +61,8 @@ pub struct RayList {
     pub spacing: [f32; 2],
     /// Where the camera is.
     pub eye: Vec3,
+    /// The depths that are seen by rays that no mirror reflected.
+    pub clip: Clip,
     /// The cone around each ray, if they have none of their own.
     pub cone: Cone,
     /// The cone around each ray that a mirror reflected, where textures need them; else empty.
@@ -113,6 +116,12 @@ impl RayList {
         self.depth > self.throughs(ray)
     }
 
+    /// The part of a ray on which surfaces are seen: mirrors show all of it.
+    #[inline(always)]
+    pub(crate) fn limits(&self, ray: usize) -> Limits {
+        if !self.clip.cuts() || self.is_mirrored(ray) { Limits::NONE } else { self.clip.limits(&self.rays[ray]) }
+    }
+
     /// Whether the mirror ray of what a ray sees is followed.
     pub(crate) fn mirrors(&self, ray: usize) -> bool {
         self.depth - self.throughs(ray) < self.bounces
@@ -159,6 +168,7 @@ impl RayList {
             bounces: self.bounces,
             spacing: self.spacing,
             eye: self.eye,
+            clip: self.clip,
             ..RayList::default()
         }
     }

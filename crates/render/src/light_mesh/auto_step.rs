@@ -9,7 +9,9 @@ use lightmesh_trace::accel::{Hit, Ray};
 use rayon::prelude::*;
 
 use super::lattice::Lattice;
+use crate::data::clip::Limits;
 use crate::prepared::PreparedScene;
+use crate::stages::primary_rays::cpu::closest_hits_within;
 use crate::surface::SurfacePoint;
 use crate::view::View;
 
@@ -86,7 +88,8 @@ fn probe(scene: &PreparedScene, view: &View) -> Vec<Probe> {
             let pixels = (stride / 2..columns).step_by(stride as usize).map(|column| row * width + column);
             let rays: Vec<Ray> = pixels.flat_map(|pixel| [view.ray(pixel), view.ray(pixel + neighbour)]).collect();
             let mut hits = vec![Hit::MISS; rays.len()];
-            scene.geometry.accelerator.closest_hits(&rays, &mut hits);
+            let limits: Vec<Limits> = rays.iter().map(|ray| view.clip().limits(ray)).collect();
+            closest_hits_within(&*scene.geometry.accelerator, &rays, &limits, &mut hits);
             let pairs = rays.chunks_exact(2).zip(hits.chunks_exact(2));
             pairs.filter_map(|(rays, hits)| look(scene, rays, hits)).collect::<Vec<Probe>>()
         })

@@ -35,11 +35,11 @@ impl Frame {
     /// A part of the image, with what was finished of it; `None` if the frame does not have all of it.
     pub fn cropped(self, crop: Crop) -> Option<Frame> {
         let Crop { first: [x, y], size: [width, height] } = crop;
-        let above = y.saturating_sub(self.image.window().first[1]);
+        let above = y.saturating_sub(self.image.window().first[1]).max(0) as u32;
         let finished = self.finished_rows().saturating_sub(above).min(height);
         let image = self.image.cropped(crop.first, crop.size)?;
         let mut stats = self.stats;
-        stats.settings.crop = Some([x, y, width, height]);
+        stats.settings.crop = Some([x.into(), y.into(), width.into(), height.into()]);
         stats.finished_rows = (finished < height).then_some(finished);
         Some(Frame { image, stats })
     }

@@ -108,5 +108,7 @@ fn camera(resolved: &Resolved) -> CameraStats {
         vfov,
         height,
         shift: (camera.shift != Vec2::ZERO).then_some(camera.shift.to_array()),
+        near: (camera.near > 0.0).then_some(camera.near),
+        far: camera.far.is_finite().then_some(camera.far),
     }
 }

@@ -27,6 +27,8 @@ const THREADS_A_CPU: usize = 4;
 /// So many are started on any machine.
 const THREADS_ANYWHERE: usize = 16;
 
+/// The largest side of an image: with what lies around it, columns and rows have 31 bits.
+const MAX_SIDE: u32 = 2_000_000_000;
 /// Samples of a pixel are numbered next to pixels in 64 bits.
 const MAX_PIXEL_SAMPLES: u32 = 1 << 16;
 
@@ -167,19 +169,23 @@ pub(super) fn worthwhile_threads(threads: usize) -> usize {
 /// Rejects invalid settings before any work.
 fn check(settings: &Settings) -> Result<(), RenderError> {
     let [width, height] = settings.size;
-    // Rays are numbered in 32 bits.
-    if width == 0 || height == 0 || u64::from(width) * u64::from(height) >= u64::from(u32::MAX) {
+    // Rays are numbered in 32 bits, columns and rows in 31.
+    let is_possible = |[width, height]: [u32; 2]| {
+        let pixels = u64::from(width) * u64::from(height);
+        pixels > 0 && pixels < u64::from(u32::MAX) && width.max(height) <= MAX_SIDE
+    };
+    if !is_possible([width, height]) {
         return Err(RenderError::Setting {
             setting: Setting::Size,
             value: format!("{width}x{height}"),
-            remedy: "both sides must be at least 1, and the number of pixels below 4294967295",
+            remedy: "both sides must be 1 to 2000000000, and the number of pixels below 4294967295",
         });
     }
-    if let Some(crop) = settings.crop.filter(|crop| !crop.is_within(settings.size)) {
+    if let Some(crop) = settings.crop.filter(|crop| !(crop.is_near(settings.size) && is_possible(crop.size))) {
         return Err(RenderError::Setting {
             setting: Setting::Crop,
             value: crop.to_string(),
-            remedy: "choose pixels of the image, at least one",
+            remedy: "choose 1 to 4294967294 pixels of the image and around it, up to 65536 beyond its edges",
         });
     }
     let samples = Technique::samples(settings);

@@ -1,6 +1,7 @@
 // Lights that rays see: twin of seen_lights.rs, with its steps.
 #pragma once
 
+#include "data/clip.cuh"
 #include "shading/shading.cuh"
 
 // A ray and how wide it is.
@@ -9,6 +10,8 @@ struct Beam {
     Cone cone;
     // What the width of the cone is multiplied with, and where it hits a surface.
     float times, end;
+    // The part of it on which lights are seen.
+    Limits limits;
     // The share of lights that it shows.
     float shown;
     bool from_camera;
@@ -35,6 +38,11 @@ struct LightsInFront {
 // How wide the ray is after a distance.
 DEVICE float beam_width(const Beam &beam, float distance) { return fabsf(beam.cone.width + beam.cone.spread * distance) * beam.times; }
 
+// Whether a light at this distance is seen.
+DEVICE bool is_met_at(const Beam &beam, float distance) {
+    return distance > beam.limits.start && distance <= beam.end * SAME_DISTANCE && distance <= beam.limits.end;
+}
+
 // Where the ray meets a plane.
 struct Met {
     // Whether that is before a surface, and on the side that shines.
@@ -50,7 +58,7 @@ DEVICE Met meets(const Beam &beam, const Light &light, Vec3 normal) {
     const float toward = dot(normal, beam.direction);
     const float on_plane = dot(normal, way) / toward;
     const float distance = fminf(on_plane, dot(way, beam.direction) + light.size);
-    const bool is_met = on_plane > 0.0f && on_plane < INFINITE && distance > 0.0f && distance <= beam.end * SAME_DISTANCE;
+    const bool is_met = on_plane > 0.0f && on_plane < INFINITE && is_met_at(beam, distance);
     const bool shines = !light.surface || dot(light.direction, beam.direction) < 0.0f;
     return Met{is_met && shines, on_plane * beam.direction - way, distance, fabsf(toward)};
 }
@@ -125,7 +133,7 @@ DEVICE Seen sees_ball(const Beam &beam, const Light &light) {
     const float aside = length(way - along * beam.direction);
     const float before = aside < light.radius ? sqrtf(square - aside * aside) : 0.0f;
     const float distance = along - before;
-    if (!(all > square && distance > 0.0f && distance <= beam.end * SAME_DISTANCE))
+    if (!(all > square && is_met_at(beam, distance)))
         return Seen{};
     // 2.
     const float share = within_circle(light.radius, aside, beam_width(beam, along));
@@ -162,7 +170,8 @@ DEVICE Beam beam_of(const Rays &rays, const Hit *hits, unsigned ray, float times
     const Ray along = ray_at(rays, ray);
     const Hit hit = load_hit(hits, ray);
     const float end = hit.triangle != Hit::NONE ? hit.t : INFINITE;
-    return Beam{along.origin, along.direction, cone_of(rays, ray), times, end, lights_share(rays, ray), rays.depth == 0};
+    return Beam{along.origin, along.direction, cone_of(rays, ray), times, end, limits_of(rays, ray, along), lights_share(rays, ray),
+                rays.depth == 0};
 }
 
 // All of what is behind, and no light yet.

@@ -25,6 +25,7 @@ use lightmesh_scene::{Falloff, Light, LightKind, Lights};
 use rayon::prelude::*;
 
 use super::{cone, seen_as};
+use crate::data::clip::Limits;
 use crate::data::wave::HostWave;
 use crate::footprint::Cone;
 use crate::sampling::disk_radius;
@@ -42,6 +43,8 @@ struct Beam {
     times: f32,
     /// Where it hits a surface.
     end: f32,
+    /// The part of it on which lights are seen.
+    limits: Limits,
 }
 
 /// What a ray sees of a light.
@@ -116,6 +119,7 @@ impl<'a> SeenLights<'a> {
             cone: list.cone_of(ray),
             times: times * list.samples_of(ray).sqrt(),
             end: if hit.is_some() { hit.t } else { f32::INFINITY },
+            limits: list.limits(ray),
         };
         let shown = list.lights_share(ray);
         // 3. From the nearest on.
@@ -162,6 +166,12 @@ impl Beam {
         (self.cone.width + self.cone.spread * distance).abs() * self.times
     }
 
+    /// Whether a light at this distance is seen.
+    #[inline(always)]
+    fn is_met_at(&self, distance: f32) -> bool {
+        distance > self.limits.start && distance <= self.end * SAME_DISTANCE && distance <= self.limits.end
+    }
+
     /// Where the ray meets a plane, from the light's centre, and at which distance, if that is before a surface; and the cosine between them.
     #[inline(always)]
     fn meets(&self, light: &Light, center: Vec3, normal: Vec3) -> Option<(Vec3, f32, f32)> {
@@ -169,8 +179,7 @@ impl Beam {
         let (way, toward) = (center - self.origin, normal.dot(self.direction));
         let on_plane = normal.dot(way) / toward;
         let distance = on_plane.min(way.dot(self.direction) + size(light, 1.0));
-        let is_met =
-            on_plane > 0.0 && on_plane < f32::INFINITY && distance > 0.0 && distance <= self.end * SAME_DISTANCE;
+        let is_met = on_plane > 0.0 && on_plane < f32::INFINITY && self.is_met_at(distance);
         let shines = light.surface.is_none_or(|front| front.dot(self.direction) < 0.0);
         (is_met && shines).then_some((on_plane * self.direction - way, distance, toward.abs()))
     }
@@ -210,7 +219,7 @@ impl Beam {
         let aside = (way - along * self.direction).length();
         let before = if aside < radius { (square - aside * aside).sqrt() } else { 0.0 };
         let distance = along - before;
-        if !(all > square && distance > 0.0 && distance <= self.end * SAME_DISTANCE) {
+        if !(all > square && self.is_met_at(distance)) {
             return None;
         }
         // 2.

@@ -45,8 +45,8 @@ impl ShadowTechnique for Adaptive {
         let n = runner.backend.ray_count(wave.rays);
         let target = wave.shadow_target();
         each_group::<B>(wave, groups, sink, |wave| {
-            // Each surface point twice for each light: its first ray, and what follows from the answers.
-            let pieces = 2 * n * wave.lights.of(groups.lights).len();
+            // Each surface point twice for each light: its first ray, and what follows from the answers. Without lights it is looked at, too.
+            let pieces = 2 * n * wave.lights.of(groups.lights).len().max(1);
             runner.stage(Stage::AdaptiveShadows, [n, pieces], |backend| backend.adaptive_shadows(wave, &target))
         })
     }

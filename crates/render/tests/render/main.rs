@@ -3,6 +3,7 @@
 mod adaptive;
 mod alpha_mask;
 mod antialiasing;
+mod clip;
 mod convergence;
 mod crop;
 mod degenerate;

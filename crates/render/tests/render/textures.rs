@@ -51,7 +51,7 @@ fn floor(size: [u32; 2], side: u32, wrap: Wrap) -> Scene {
 
 /// Settings for rows of the image alone.
 fn of(settings: &Settings, rows: &Range<usize>) -> Settings {
-    settings.clone().with_crop(Crop::new([0, rows.start as u32], [SIZE[0], rows.len() as u32]))
+    settings.clone().with_crop(Crop::new([0, rows.start as i32], [SIZE[0], rows.len() as u32]))
 }
 
 /// All pixels, one channel.

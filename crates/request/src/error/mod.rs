@@ -176,14 +176,16 @@ mod tests {
 
     #[test]
     fn a_message_is_in_the_words_of_its_face() {
-        let error = RequestError::Crop { crop: Crop::new([60, 0], [10, 10]), size: [64, 48] };
+        let error = RequestError::Crop { crop: Crop::new([-70_000, 0], [10, 10]), size: [64, 48] };
         assert_eq!(
             error.told(Words::Flags),
-            "--crop 60,0,10,10 exceeds the image of 64x48 pixels; choose a part of the image (--crop, --size)"
+            "--crop -70000,0,10,10 is more than 65536 pixels beyond the image of 64x48 pixels; choose a part of the image, or what is next to \
+             it (--crop, --size)"
         );
         assert_eq!(
             error.to_string(),
-            "crop=60,0,10,10 exceeds the image of 64x48 pixels; choose a part of the image (crop, size)"
+            "crop=-70000,0,10,10 is more than 65536 pixels beyond the image of 64x48 pixels; choose a part of the image, or what is next to it \
+             (crop, size)"
         );
     }
 

@@ -62,7 +62,7 @@ pub enum RequestError {
     Manifest(Box<ManifestError>),
     /// A film cannot become a movie.
     Movie(MovieChoiceError),
-    /// The part of the image is not in it.
+    /// The part of the image is too far from it.
     Crop {
         /// The part.
         crop: Crop,
@@ -144,7 +144,7 @@ impl Told for RequestError {
             RequestError::Manifest(error) => error.told(words),
             RequestError::Movie(error) => error.told(words),
             RequestError::Crop { crop, size: [width, height] } => format!(
-                "{} exceeds the image of {width}x{height} pixels; choose a part of the image ({}, {})",
+                "{} is more than 65536 pixels beyond the image of {width}x{height} pixels; choose a part of the image, or what is next to it ({}, {})",
                 words.with("crop", crop),
                 of("crop"),
                 of("size")

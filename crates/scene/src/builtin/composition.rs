@@ -27,6 +27,8 @@ impl Composition {
             up: Vec3::Y,
             projection: Projection::Perspective(Fov::Vertical(self.vfov)),
             shift: Vec2::ZERO,
+            near: 0.0,
+            far: f32::INFINITY,
             motion: None,
         };
         let geometry = Geometry { mesh: self.mesh, materials: self.palette.0, ..Geometry::default() };

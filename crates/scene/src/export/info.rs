@@ -129,6 +129,12 @@ pub struct CameraInfo {
     /// By how much the image is to the right of the viewing direction and above it, in heights of the image, if it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shift: Option<[f64; 2]>,
+    /// The depth from which on surfaces and lights are seen, if not all are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub near: Option<f64>,
+    /// The depth up to which they are seen, if not all are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub far: Option<f64>,
 }
 
 impl Scene {
@@ -220,6 +226,8 @@ fn camera_info(scene: &Scene, camera: &Camera) -> CameraInfo {
         hfov: hfov.map(shortest),
         height: height.map(shortest),
         shift: (camera.shift != Vec2::ZERO).then(|| camera.shift.to_array().map(shortest)),
+        near: (camera.near > 0.0).then(|| shortest(camera.near)),
+        far: camera.far.is_finite().then(|| shortest(camera.far)),
     }
 }
 
@@ -314,7 +322,13 @@ impl fmt::Display for CameraInfo {
             (.., Some(height)) => write!(f, ", orthographic, height {}", rounded(height))?,
             _ => {}
         }
-        self.shift.map_or(Ok(()), |[x, y]| write!(f, ", shift {} {}", rounded(x), rounded(y)))
+        if let Some([x, y]) = self.shift {
+            write!(f, ", shift {} {}", rounded(x), rounded(y))?;
+        }
+        let mut depth =
+            |name, depth: Option<f64>| depth.map_or(Ok(()), |depth| write!(f, ", {name} {}", rounded(depth)));
+        depth("near", self.near)?;
+        depth("far", self.far)
     }
 }
 

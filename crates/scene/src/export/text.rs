@@ -78,6 +78,8 @@ fn camera_entry(scene: &Scene, camera: &Camera) -> CameraEntry {
         projection: None,
         height: None,
         shift: (camera.shift != Vec2::ZERO).then(|| anywhere(camera.shift.to_array().map(shortest))),
+        near: (camera.near > 0.0).then(|| number(camera.near)),
+        far: camera.far.is_finite().then(|| number(camera.far)),
         motion: None,
     };
     match camera.projection {

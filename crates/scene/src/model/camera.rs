@@ -59,6 +59,10 @@ pub struct Camera {
     /// By how much the image is to the right of the view direction, and above it, in heights of the image: as with a lens that is shifted,
     /// what is parallel to the image stays undistorted. Fields of view are those without it.
     pub shift: Vec2,
+    /// The depth from which on surfaces and lights are seen, scene units along the view direction; 0 for all. See [`Camera::with_clip`].
+    pub near: f32,
+    /// The depth up to which they are seen; infinite for all.
+    pub far: f32,
     /// The number of its motion in the scene's animation.
     pub(crate) motion: Option<u32>,
 }
@@ -84,6 +88,16 @@ pub enum CameraError {
     Angle {
         /// The given angle, degrees.
         vfov: f32,
+    },
+    /// There is no depth between the clip planes.
+    #[error(
+        "the camera sees nothing between the depths {near} and {far}: choose a near of at least 0, and a far beyond it"
+    )]
+    Clip {
+        /// The given depth of the near plane.
+        near: f32,
+        /// The given depth of the far plane.
+        far: f32,
     },
 }
 
@@ -132,6 +146,8 @@ impl Camera {
             up: upper_edge(forward, up).as_vec3(),
             projection: Projection::Perspective(Fov::Vertical(vfov)),
             shift: Vec2::ZERO,
+            near: 0.0,
+            far: f32::INFINITY,
             motion: None,
         })
     }
@@ -160,6 +176,30 @@ impl Camera {
     pub fn with_shift(self, shift: impl Into<Vec2>) -> Camera {
         let limited = |part: f32| if part.is_nan() { 0.0 } else { part.clamp(-LARGEST_SHIFT, LARGEST_SHIFT) };
         Camera { shift: shift.into().map(limited), ..self }
+    }
+
+    /// The same camera, which sees surfaces and lights of the depths from `near` to `far` alone: distances along the view direction, in scene
+    /// units, not along a pixel's ray. What is behind what is cut away is seen in its place, also behind surfaces that let light through.
+    /// Shadows, mirrors and gathered light stay, and so does the sky.
+    ///
+    /// ```
+    /// use lightmesh_scene::{Camera, glam::Vec3};
+    ///
+    /// // Into a room through its wall.
+    /// let camera = Camera::look_to(Vec3::new(0.0, 1.7, 9.0), Vec3::NEG_Z, Vec3::Y, 50.0)?.with_clip(4.5, f32::INFINITY)?;
+    /// assert_eq!(camera.near, 4.5);
+    /// # Ok::<(), lightmesh_scene::CameraError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`CameraError::Clip`] if `near` is negative or not finite, or `far` is not above it.
+    pub fn with_clip(self, near: f32, far: f32) -> Result<Camera, CameraError> {
+        if near >= 0.0 && near.is_finite() && far > near {
+            Ok(Camera { near, far, ..self })
+        } else {
+            Err(CameraError::Clip { near, far })
+        }
     }
 
     /// The same direction and projection from another position, in the local frame.

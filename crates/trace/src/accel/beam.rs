@@ -78,7 +78,7 @@ impl<'a> Beams<'a> {
 
     /// Finds the triangles that rays may hit up to `far`; `false` if there are too many, or too little is known.
     fn search(&mut self, rays: &[Ray], far: Option<f32>) -> bool {
-        let near = |ray: &Ray| self.ray_clamp.is_near(ray) && ray.t_max == f32::INFINITY;
+        let near = |ray: &Ray| self.ray_clamp.is_near(ray);
         if !matches!(self.accelerator.kind(), AcceleratorKind::Bvh(_)) || !rays.iter().all(near) {
             return false;
         }
@@ -140,7 +140,7 @@ fn test<S: Simd>(
 #[inline(always)]
 fn packet<'a, S: Simd>(simd: S, alpha_mask: &'a AlphaMask, rays: &[Ray]) -> Option<ClosestPacket<'a, S>> {
     let axis = largest_axis(rays[0].direction);
-    let (mut origin, mut direction) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+    let (mut origin, mut direction, mut t_max) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [0.0; LANES]);
     for lane in 0..LANES {
         let ray = rays[lane.min(rays.len() - 1)];
         if largest_axis(ray.direction) != axis {
@@ -150,10 +150,11 @@ fn packet<'a, S: Simd>(simd: S, alpha_mask: &'a AlphaMask, rays: &[Ray]) -> Opti
             origin[k][lane] = ray.origin[k];
             direction[k][lane] = ray.direction[k];
         }
+        t_max[lane] = ray.t_max;
     }
     let axes = |of: &[[f32; LANES]; 3]| {
         [f32x8::from_slice(simd, &of[0]), f32x8::from_slice(simd, &of[1]), f32x8::from_slice(simd, &of[2])]
     };
     let shear = PacketShear::new(&axes(&origin), &axes(&direction), axis);
-    Some(ClosestPacket::new(simd, alpha_mask, shear, f32x8::splat(simd, f32::INFINITY)))
+    Some(ClosestPacket::new(simd, alpha_mask, shear, f32x8::from_slice(simd, &t_max)))
 }

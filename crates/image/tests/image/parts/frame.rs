@@ -44,9 +44,16 @@ fn a_crop_has_the_pixels_of_the_image() {
     assert_eq!(crop.layers().unwrap().visibility[1].len(), 6);
     assert_eq!((crop.pixel(0, 0), crop.pixel(2, 1)), (Some([8.0; 3]), Some([16.0; 3])));
     assert_eq!((crop.window().first, crop.window().whole), ([2, 1], [6, 5]));
+    // What is around the image has places, too.
+    let around = frame.clone().with_window([-2, -1], [2, 4]);
+    let left = around.cropped([-1, 0], [3, 2]).unwrap();
+    assert_eq!((left.layers().unwrap().used.clone(), left.window().first), (vec![7, 8, 9, 13, 14, 15], [-1, 0]));
+    assert_eq!((around.cropped([-3, 0], [2, 2]), around.cropped([3, 0], [2, 1])), (None, None));
     // Cropping twice is cropping once.
     assert_eq!(crop.cropped([3, 2], [2, 1]), frame.cropped([3, 2], [2, 1]));
-    for (first, size) in [([1, 1], [2, 2]), ([2, 1], [4, 2]), ([2, 1], [0, 1]), ([u32::MAX, 1], [2, 1])] {
+    for (first, size) in
+        [([1, 1], [2, 2]), ([2, 1], [4, 2]), ([2, 1], [0, 1]), ([i32::MAX, 1], [2, 1]), ([-1, 1], [2, 1])]
+    {
         assert_eq!(crop.cropped(first, size), None, "{first:?} {size:?}");
     }
 }

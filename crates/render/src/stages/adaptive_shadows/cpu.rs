@@ -48,6 +48,8 @@ struct Band<'a> {
     /// Rays and hits of the rows next to the wave's.
     margins: Vec<(crate::data::rays::RayList, Vec<lightmesh_trace::accel::Hit>)>,
     places: Places,
+    /// Whether some pixels are not in the image.
+    leaves_image: bool,
 }
 
 impl<'a> Band<'a> {
@@ -61,7 +63,8 @@ impl<'a> Band<'a> {
             let hits = closest_hits(wave.scene, &rays, |_, trace| trace());
             (rays, hits)
         });
-        Band { wave, width: width as usize, rows, margins: margins.into(), places: places() }
+        let leaves_image = view.window().leaves_image();
+        Band { wave, width: width as usize, rows, margins: margins.into(), places: places(), leaves_image }
     }
 
     /// The shares of a light of which all samples are tested.
@@ -97,7 +100,7 @@ impl<'a> Band<'a> {
                 for (ray, share) in (first..).zip(shares.iter_mut()) {
                     let place = self.place(wave.rays.pixels[ray]);
                     let own = u32::from(answers[place].load(Ordering::Relaxed));
-                    if own & ANSWER_STRADDLES != 0 || own != 0 && self.around(&wide, place) == ANSWER_BOTH {
+                    if own & ANSWER_STRADDLES != 0 || own != 0 && self.around(&answers, &wide, place) == ANSWER_BOTH {
                         open.push(ray);
                     } else {
                         *share = (own & ANSWER_LIT) as f32;
@@ -170,11 +173,21 @@ impl<'a> Band<'a> {
     }
 
     /// The answers in the neighbourhood of a place.
-    fn around(&self, wide: &[u8], place: usize) -> u32 {
+    fn around(&self, answers: &[AtomicU8], wide: &[u8], place: usize) -> u32 {
         let (row, column) = (place / self.width, place % self.width);
         let around = AROUND as usize;
         let rows = row.saturating_sub(around)..self.rows.len().min(row + around + 1);
-        let all = rows.fold(0, |all, row| all | wide[row * self.width + column]);
+        let all = if self.leaves_image {
+            // Those on the other side of the image's edge do not count for its pixels.
+            let columns = column.saturating_sub(around)..self.width.min(column + around + 1);
+            let others = rows.flat_map(|row| columns.clone().map(move |column| row * self.width + column));
+            let pixel = |place: usize| place as u32 + self.rows.start * self.width as u32;
+            let window = &self.wave.rays.window;
+            let counting = others.filter(|&other| !window.is_beyond(pixel(place), pixel(other)));
+            counting.fold(0, |all, other| all | answers[other].load(Ordering::Relaxed))
+        } else {
+            rows.fold(0, |all, row| all | wide[row * self.width + column])
+        };
         u32::from(all) & ANSWER_BOTH
     }
 }

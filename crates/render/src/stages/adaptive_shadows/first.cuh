@@ -6,7 +6,8 @@
 
 // The place of the ray of a pixel of a view's window.
 DEVICE unsigned place_of(const View &view, unsigned pixel) {
-    return place_in_image(view, pixel, 1) % NEIGHBORHOOD * NEIGHBORHOOD + place_in_image(view, pixel, 0) % NEIGHBORHOOD;
+    const int x = place_in_image(view, pixel, 0), y = place_in_image(view, pixel, 1);
+    return place_in_step(y, NEIGHBORHOOD) * NEIGHBORHOOD + place_in_step(x, NEIGHBORHOOD);
 }
 
 // A light as a surface point sees it: its points are at `center + x · u + y · v`.

@@ -33,10 +33,11 @@ pub fn places() -> Places {
     [discs, rectangles]
 }
 
-/// The place of the ray of a pixel in column `x` and row `y` of the image.
+/// The place of the ray of a pixel in column `x` and row `y` of the image, or outside of it.
 #[inline(always)]
-pub fn place_of([x, y]: [u32; 2]) -> u32 {
-    y % NEIGHBORHOOD * NEIGHBORHOOD + x % NEIGHBORHOOD
+pub fn place_of(place: [i32; 2]) -> u32 {
+    let [x, y] = place.map(|place| place.rem_euclid(NEIGHBORHOOD as i32) as u32);
+    y * NEIGHBORHOOD + x
 }
 
 /// A light as a surface point sees it: its points are at `center + x · u + y · v`.

@@ -101,14 +101,19 @@ KERNEL(find_open, AdaptiveShadows, BLOCK, 4) {
         load_answers(args, slice, (int)left - (int)AROUND, (int)(top + args.first_answer / width) - (int)AROUND, near);
     __syncthreads();
 
+    const View &view = shadows.rays.view;
+    const bool leaves = leaves_image(view);
     unsigned ray;
     bool open = false;
     if (has_answers && ray_of_thread(shadows.rays, tile, threadIdx.x, ray)) {
         const unsigned *corner = near + (ray / width - top) * EDGE + (ray % width - left);
         const unsigned own = corner[AROUND * EDGE + AROUND];
         unsigned all = 0;
-        for (unsigned place = 0; place < FIRST_TARGETS; ++place)
-            all |= corner[place / NEIGHBORHOOD * EDGE + place % NEIGHBORHOOD];
+        for (unsigned place = 0; place < FIRST_TARGETS; ++place) {
+            const unsigned row = place / NEIGHBORHOOD, column = place % NEIGHBORHOOD;
+            if (!leaves || !is_beyond(view, pixel_of(shadows.rays, ray), (int)column - (int)AROUND, (int)row - (int)AROUND))
+                all |= corner[row * EDGE + column];
+        }
         open = (own & ANSWER_STRADDLES) != 0 || (own != 0 && (all & ANSWER_BOTH) == ANSWER_BOTH);
         share_of(shadows, light, ray) = open ? -1.0f : (float)(own & ANSWER_LIT);
     }

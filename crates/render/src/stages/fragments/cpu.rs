@@ -118,8 +118,11 @@ fn is_split(wave: &HostWave, samples: &PixelSamples, film: &Picture, all: &Antia
     }
     let color = |index: u32| Vec3::from_array(film.color[index as usize]);
     let own = OnceCell::new();
+    let window = &wave.rays.window;
+    let leaves_image = window.leaves_image();
     around(index, film.size[0], film.rows.len() as u32).any(|other| {
-        is_shared(other)
+        !(leaves_image && window.is_beyond(samples.first + index, samples.first + other))
+            && is_shared(other)
             && differs(color(index), color(other), all.contrast)
             && hit(index).is_some()
             && hit(other).is_some()

@@ -33,11 +33,15 @@ DEVICE bool is_split(const PixelSamples &args, unsigned index) {
         return false;
     const unsigned width = args.rays.view.size[0];
     const Around columns = around(index % width, width), rows = around(index / width, args.rays.count / width);
+    const bool leaves = leaves_image(args.rays.view);
     bool has_own = false;
     Facet own = {};
     for (unsigned row = rows.start; row < rows.end; ++row)
         for (unsigned column = columns.start; column < columns.end; ++column) {
             const unsigned other = row * width + column;
+            const int right = (int)column - (int)(index % width), down = (int)row - (int)(index / width);
+            if (leaves && is_beyond(args.rays.view, args.rays.first_pixel + index, right, down))
+                continue;
             if ((args.state[other] & PIXEL_SHARED) == 0 || !differs(args.color[index], args.color[other], args.contrast))
                 continue;
             const Hit hit = sample_hit(args, index, 0), beside = sample_hit(args, other, 0);

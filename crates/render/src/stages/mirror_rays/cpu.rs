@@ -44,11 +44,14 @@ fn beyond(list: &RayList) -> RayList {
 fn points(wave: &HostWave, ray: usize, count: u32) -> impl Fn(u32) -> [f32; 2] {
     let list = wave.rays;
     // 1. Those of a tile of pixels are one pattern at each depth, in the order of a curve.
-    let [x, y] = list.window.place(list.pixels[ray]);
-    let tile = ((y / LOBE_TILE) << 16) | (x / LOBE_TILE);
+    let place = list.window.place(list.pixels[ray]);
+    let [column, row] = place.map(|place| place.rem_euclid(LOBE_TILE as i32) as u32);
+    // Tiles to the left of the image, and above, have negative numbers.
+    let [across, down] = place.map(|place| place.div_euclid(LOBE_TILE as i32) as u32);
+    let tile = (down << 16).wrapping_add(across);
     let key = u64::from(list.depth) << 32 | u64::from(tile);
     let pattern = Pattern::new(wave.context.sampling.seed, key, LOBE_PATTERN as usize);
-    let place = along_curve(x % LOBE_TILE, y % LOBE_TILE);
+    let place = along_curve(column, row);
 
     // 2. Those of a pixel follow each other: of its first sample, or of the only one, and so on.
     let samples = if list.sample(ray) == 0 { 1 } else { wave.context.pixel_samples.next_power_of_two() };

@@ -48,7 +48,7 @@ DEVICE unsigned offset_of(const Rays &rays, unsigned pixel) {
         across *= THIN_ACROSS;
         down *= THIN_DOWN;
     }
-    const unsigned x = place_in_image(rays.view, pixel, 0) * across, y = place_in_image(rays.view, pixel, 1) * down;
+    const unsigned x = (unsigned)place_in_image(rays.view, pixel, 0) * across, y = (unsigned)place_in_image(rays.view, pixel, 1) * down;
     return (x + y + (rays.depth + 1) * THIN_DEEPER) >> (32 - THIN_BITS);
 }
 
@@ -81,8 +81,11 @@ struct Points {
 DEVICE Points points_of(const MirrorRays &args, unsigned ray, unsigned count) {
     // 1. Those of a tile of pixels are one pattern at each depth, in the order of a curve.
     const unsigned pixel = pixel_of(args.rays, ray);
-    const unsigned x = place_in_image(args.rays.view, pixel, 0), y = place_in_image(args.rays.view, pixel, 1);
-    const unsigned tile = (y / LOBE_TILE) << 16 | x / LOBE_TILE, place = along_curve(x % LOBE_TILE, y % LOBE_TILE);
+    const int x = place_in_image(args.rays.view, pixel, 0), y = place_in_image(args.rays.view, pixel, 1);
+    const unsigned column = place_in_step(x, LOBE_TILE), row = place_in_step(y, LOBE_TILE);
+    // Tiles to the left of the image, and above, have negative numbers.
+    const int across = (x - (int)column) / (int)LOBE_TILE, down = (y - (int)row) / (int)LOBE_TILE;
+    const unsigned tile = ((unsigned)down << 16) + (unsigned)across, place = along_curve(column, row);
 
     // 2. Those of a pixel follow each other: of its first sample, or of the only one, and so on.
     const unsigned samples = sample_of(args.rays, ray) == 0 ? 1 : (unsigned)args.pixel_samples;

@@ -58,7 +58,7 @@ impl<'a> Thinning<'a> {
 
     /// The offset of a pixel. That of one depth tells nothing of the next one's, which would spoil the mean.
     fn offset(&self, pixel: u32) -> u32 {
-        let [x, y] = self.list.window.place(pixel);
+        let [x, y] = self.list.window.place(pixel).map(|place| place as u32);
         let times = self.list.depth + 1;
         let (x, y) = (x.wrapping_mul(THIN_ACROSS.wrapping_pow(times)), y.wrapping_mul(THIN_DOWN.wrapping_pow(times)));
         x.wrapping_add(y).wrapping_add(times.wrapping_mul(THIN_DEEPER)) >> (u32::BITS - THIN_BITS)

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use fearless_simd::Level;
 use glam::Vec3;
 use lightmesh_layout::constants::PIXEL_SHARED;
-use lightmesh_trace::accel::Hit;
+use lightmesh_trace::accel::{Hit, Ray};
 use rayon::prelude::*;
 
 use super::SampleRange;
 use super::same_surface::{Facet, Surfaces, is_transmissive};
 use crate::counters::Tally;
+use crate::data::clip::{Clip, Limits};
 use crate::data::mattes::count;
 use crate::data::picture::Picture;
 use crate::data::rays::{RayList, Sampled};
@@ -46,13 +47,15 @@ pub(crate) fn pixel_samples(
     let depths = Depths::new(&rays, &hits, first);
     let mut all_hits: Vec<Hit> = bytemuck::zeroed_vec(pixels * count);
     all_hits.par_chunks_mut(BATCH * count).enumerate().for_each_init(
-        || (Vec::new(), scene.geometry.beams()),
-        |(rays, beams), (batch, hits)| {
+        || (Vec::new(), Vec::new(), scene.geometry.beams()),
+        |(rays, limits, beams), (batch, hits)| {
             context.piece(hits.len(), || {
                 let start = batch * BATCH;
                 let pixels = first + start as u32..first + (start + hits.len() / count) as u32;
                 all.rays(level, &view, pixels, numbers.clone(), rays);
+                clip(&view.clip(), rays, limits);
                 beams.closest_hits(rays, BEAM * count, |beam| depths.around(start + beam * BEAM), hits);
+                hits.iter_mut().zip(&*limits).for_each(|(hit, limits)| *hit = limits.from_origin(*hit));
             });
         },
     );
@@ -109,6 +112,15 @@ pub(crate) fn pixel_samples(
     }
     rays.sampled = Some(Sampled { hits: Arc::clone(&samples.hits), first, count });
     (samples, rays, hits)
+}
+
+/// Rays between their limits, and these; no limits if all depths are seen.
+fn clip(clip: &Clip, rays: &mut [Ray], limits: &mut Vec<Limits>) {
+    limits.clear();
+    if clip.cuts() {
+        limits.extend(rays.iter().map(|ray| clip.limits(ray)));
+        rays.iter_mut().zip(limits).for_each(|(ray, limits)| *ray = limits.between(ray));
+    }
 }
 
 /// How far the centres of pixels see.

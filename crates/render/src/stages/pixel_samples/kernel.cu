@@ -8,6 +8,7 @@
 #include "accel/walk.cuh"
 #include "cuda/tally.cuh"
 #include "cuda/warp.cuh"
+#include "data/clip.cuh"
 #include "shading/ids.cuh"
 #include "stages/pixel_samples/same_surface.cuh"
 
@@ -40,7 +41,9 @@ DEVICE void pixel_samples(const PixelSamples &args, const Structure &structure) 
     const Place place = place_of(args, tile, part - first, args.together);
     if (place.has_ray) {
         const unsigned ray = place.ray, sample = first + place.sample;
-        const Hit hit = closest_hit(structure, args.tally, sample_ray(args, ray, sample));
+        const Ray along = sample_ray(args, ray, sample);
+        const Limits limits = limits_of(args.rays.view, along);
+        const Hit hit = from_origin(limits, closest_hit(structure, args.tally, between(limits, along)));
         store_hit(args.hits + (unsigned long long)sample * args.rays.count, ray, hit);
     }
 }

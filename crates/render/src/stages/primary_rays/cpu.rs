@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use lightmesh_layout::constants::TILE_SIDE;
-use lightmesh_trace::accel::{Hit, Ray};
+use lightmesh_trace::accel::{Accelerator, Hit, Ray};
 use rayon::prelude::*;
 
 use crate::counters::Tally;
+use crate::data::clip::Limits;
 use crate::data::rays::RayList;
 use crate::prepared::PreparedScene;
 use crate::render_context::RenderContext;
@@ -18,8 +19,8 @@ const BATCH: usize = 2048;
 pub(crate) fn camera_rays(view: &View, rows: Range<u32>) -> RayList {
     let pixels = blocks_of_pixels(view.size()[0], rows);
     let rays: Vec<Ray> = pixels.par_iter().map(|&pixel| view.ray(pixel)).collect();
-    let (spacing, window) = (view.spacing(), view.window());
-    RayList { rays, pixels, spacing, eye: view.origin(), view: Some(*view), window, ..RayList::default() }
+    let (spacing, window, clip) = (view.spacing(), view.window(), view.clip());
+    RayList { rays, pixels, spacing, eye: view.origin(), clip, view: Some(*view), window, ..RayList::default() }
 }
 
 /// The pixels of some rows in blocks of 4×2 within 8×8 within 32×32, so that consecutive rays are coherent.
@@ -68,8 +69,23 @@ pub(crate) fn closest_hits(
 ) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; list.rays.len()];
     let batch = batch(list.rays.len());
-    list.rays.par_chunks(batch).zip(hits.par_chunks_mut(batch)).for_each(|(rays, hits)| {
-        piece(rays.len(), &mut || scene.geometry.accelerator.closest_hits(rays, hits));
+    list.rays.par_chunks(batch).zip(hits.par_chunks_mut(batch)).enumerate().for_each(|(task, (rays, hits))| {
+        piece(rays.len(), &mut || {
+            if list.clip.cuts() {
+                let first = task * batch;
+                let limits: Vec<Limits> = (first..first + rays.len()).map(|ray| list.limits(ray)).collect();
+                closest_hits_within(&*scene.geometry.accelerator, rays, &limits, hits);
+            } else {
+                scene.geometry.accelerator.closest_hits(rays, hits);
+            }
+        });
     });
     hits
+}
+
+/// The hits of rays between their limits.
+pub(crate) fn closest_hits_within(accelerator: &dyn Accelerator, rays: &[Ray], limits: &[Limits], hits: &mut [Hit]) {
+    let between: Vec<Ray> = rays.iter().zip(limits).map(|(ray, limits)| limits.between(ray)).collect();
+    accelerator.closest_hits(&between, hits);
+    hits.iter_mut().zip(limits).for_each(|(hit, limits)| *hit = limits.from_origin(*hit));
 }

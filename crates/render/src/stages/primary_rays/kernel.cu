@@ -6,7 +6,7 @@
 #include "cuda/prelude.cuh"
 
 #include "accel/walk.cuh"
-#include "data/rays.cuh"
+#include "data/clip.cuh"
 #include "cuda/tally.cuh"
 
 template <class Structure>
@@ -14,7 +14,9 @@ DEVICE void primary_rays(const PrimaryRays &args, const Structure &structure) {
     unsigned ray;
     bool found = false;
     if (ray_of_thread(args.rays, args.first_block + blockIdx.x, threadIdx.x, ray)) {
-        const Hit hit = closest_hit(structure, args.tally, ray_at(args.rays, ray));
+        const Ray along = ray_at(args.rays, ray);
+        const Limits limits = limits_of(args.rays, ray, along);
+        const Hit hit = from_origin(limits, closest_hit(structure, args.tally, between(limits, along)));
         store_hit(args.hits, ray, hit);
         found = hit.triangle != Hit::NONE;
     }

@@ -1,3 +1,5 @@
+use std::collections::HashSet;
+
 use glam::Vec3;
 use lightmesh_render::{View, Window};
 use lightmesh_scene::{Camera, Fov, Projection};
@@ -33,12 +35,40 @@ fn a_window_has_the_rays_and_numbers_of_the_image() {
         let view = whole.with_window(Window { size, first, whole: [40, 30] });
         for index in 0..size[0] * size[1] {
             let number = view.window().number(index);
-            assert_eq!([number % 40, number / 40], [index % size[0] + first[0], index / size[0] + first[1]]);
+            let place = [index % size[0] + first[0] as u32, index / size[0] + first[1] as u32];
+            assert_eq!([number % 40, number / 40], place);
             assert_eq!(view.ray(index).direction, whole.ray(number).direction);
         }
     }
     let window = Window { size: [5, 4], first: [1, 25], whole: [40, 30] };
     assert_eq!(window.grown(3), Window { size: [9, 8], first: [0, 22], whole: [40, 30] });
+}
+
+#[test]
+fn a_window_around_an_image_has_rays_and_numbers_of_its_own() {
+    for projection in [Projection::Perspective(Fov::Vertical(90.0)), Projection::Orthographic { height: 3.0 }] {
+        let whole = View::new(&camera(projection), [40, 30]);
+        let [around, part] = [([-9, -4], [60, 40]), ([-2, 27], [7, 8])]
+            .map(|(first, size)| whole.with_window(Window { size, first, whole: [40, 30] }));
+        let mut numbers = HashSet::new();
+        for index in 0..60 * 40 {
+            let (x, y) = (index as i32 % 60 - 9, index as i32 / 60 - 4);
+            if (0..40).contains(&x) && (0..30).contains(&y) {
+                let number = around.window().number(index);
+                assert_eq!(number as i32, y * 40 + x);
+                assert_eq!(around.ray(index), whole.ray(number));
+            }
+            assert!(numbers.insert(around.window().number(index)), "{x}, {y}: none twice");
+            // Another window has the same.
+            if (-2..5).contains(&x) && (27..35).contains(&y) {
+                let other = ((y - 27) * 7 + x + 2) as u32;
+                assert_eq!(part.window().number(other), around.window().number(index));
+                assert_eq!(part.ray(other), around.ray(index));
+            }
+        }
+    }
+    let window = Window { size: [5, 40], first: [1, -2], whole: [40, 30] };
+    assert_eq!(window.grown(3), Window { size: [11, 46], first: [-2, -5], whole: [40, 30] });
 }
 
 #[test]

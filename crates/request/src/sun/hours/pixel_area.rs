@@ -40,7 +40,7 @@ impl PixelGrid {
 
     /// The area of a surface with this `normal` at this `depth` along the ray of the pixel in this column and row of the image: the square of
     /// the distance times the solid angle of the pixel, or its area if rays are parallel, over the cosine.
-    pub(super) fn area(&self, [column, row]: [u32; 2], depth: f32, normal: Vec3) -> f32 {
+    pub(super) fn area(&self, [column, row]: [i32; 2], depth: f32, normal: Vec3) -> f32 {
         let across = self.pitch * self.pitch;
         if !self.is_perspective {
             return across / normal.dot(self.forward).abs().max(MIN_COSINE);

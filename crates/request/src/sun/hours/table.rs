@@ -40,7 +40,7 @@ fn rows(found: &SunHours) -> BTreeMap<u32, Row> {
     let mut rows: BTreeMap<u32, Row> = BTreeMap::new();
     for pixel in (0..found.hours.len()).filter(|&pixel| found.sees(pixel)) {
         let (hours, width) = (found.hours[pixel], found.frame.width() as usize);
-        let place = [window.first[0] + (pixel % width) as u32, window.first[1] + (pixel / width) as u32];
+        let place = [window.first[0] + (pixel % width) as i32, window.first[1] + (pixel / width) as i32];
         let area = f64::from(grid.area(place, layers.depth[pixel], Vec3::from_array(layers.normal[pixel])));
         let number = layers.object.nearest.get(pixel).copied().unwrap_or_default();
         let row = rows.entry(number).or_insert_with(|| Row { least: f32::INFINITY, ..Row::default() });

@@ -175,7 +175,7 @@ fn what_leans_shows_more_of_itself() {
     let places = || (0..64 * 64).map(|pixel| [pixel % 64, pixel / 64]);
     for shift in [[0.0, 0.0], [0.5, -0.25]] {
         let grid = PixelGrid::new(&camera.clone().with_shift(shift), [64, 64]);
-        let wall = |place: [u32; 2]| {
+        let wall = |place: [i32; 2]| {
             let [x, y] = place.map(|side| (side as f32 - 31.5) / 32.0);
             let (x, y) = (x + 2.0 * shift[0], 2.0 * shift[1] - y);
             grid.area(place, 3.0 * (1.0 + x * x + y * y).sqrt(), Vec3::Z)

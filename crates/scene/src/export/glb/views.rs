@@ -12,10 +12,12 @@ use crate::model::transforms::upright;
 use crate::{Bounds, Camera, Falloff, Fov, Light, LightKind, Projection, Scene};
 
 pub(super) fn camera_entry(scene: &Scene, camera: &Camera) -> Value {
-    // Other programs need clipping planes: wide enough to contain the scene from anywhere near it.
+    // Other programs need clip planes: the camera's own, else wide enough to contain the scene from anywhere near it.
     let size = f64::from(scene.geometry.mesh.bounds().diagonal()).max(1.0);
+    let [near, far] = own_clip(camera);
     let shift = (camera.shift != Vec2::ZERO).then_some(camera.shift.to_array());
-    let mut own = CameraExtras { shift, ..CameraExtras::default() };
+    let mut own = CameraExtras { shift, near, far, ..CameraExtras::default() };
+    let [near, far] = [near, far].map(|depth| depth.map(f64::from));
     let mut entry = match camera.projection {
         Projection::Perspective(fov) => {
             let radians = match fov {
@@ -25,11 +27,18 @@ pub(super) fn camera_entry(scene: &Scene, camera: &Camera) -> Value {
             if let Fov::Horizontal(hfov) = fov {
                 own.hfov = Some(hfov);
             }
-            json!({"type": "perspective", "perspective": {"yfov": radians, "znear": 1e-4 * size}})
+            let mut perspective = json!({"yfov": radians, "znear": near.unwrap_or(1e-4 * size)});
+            if let Some(far) = far {
+                perspective["zfar"] = json!(far);
+                // The format has no range that begins behind its end.
+                perspective["znear"] = json!(near.unwrap_or((1e-4 * size).min(0.5 * far)));
+            }
+            json!({"type": "perspective", "perspective": perspective})
         }
         Projection::Orthographic { height } => {
             let mag = 0.5 * f64::from(height);
-            let planes = json!({"xmag": mag, "ymag": mag, "znear": 0.0, "zfar": 100.0 * size});
+            let near = near.unwrap_or(0.0);
+            let planes = json!({"xmag": mag, "ymag": mag, "znear": near, "zfar": far.unwrap_or(near + 100.0 * size)});
             json!({"type": "orthographic", "orthographic": planes})
         }
     };
@@ -37,6 +46,11 @@ pub(super) fn camera_entry(scene: &Scene, camera: &Camera) -> Value {
         entry["extras"] = json!({"lightmesh": own});
     }
     entry
+}
+
+/// The clip planes of a camera that has some.
+fn own_clip(camera: &Camera) -> [Option<f32>; 2] {
+    [(camera.near > 0.0).then_some(camera.near), camera.far.is_finite().then_some(camera.far)]
 }
 
 pub(super) fn camera_node(scene: &Scene, index: usize, camera: &Camera) -> Value {

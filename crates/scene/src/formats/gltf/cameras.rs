@@ -1,5 +1,6 @@
 //! Cameras. They look along −Z of their node, with +Y up; its scale does not affect them. The other angle follows from the
-//! image's aspect ratio, and there is no clipping: `aspectRatio`, `xmag`, `znear` and `zfar` are ignored.
+//! image's aspect ratio: `aspectRatio` and `xmag` are ignored. So are `znear` and `zfar`, which exporters choose for the depth buffers of
+//! rasterisers; clip planes that cut are `near` and `far` in the extras of files that we have written.
 
 use std::{f64::consts::PI, path::Path};
 
@@ -14,8 +15,9 @@ use crate::model::camera::LARGEST_SHIFT;
 use crate::{Camera, Fov, LoadError, Projection};
 
 /// A camera in the coordinates of a node.
-pub(super) fn camera(name: String, Lens { projection, shift }: Lens) -> Camera {
-    Camera { name, position: Vec3::ZERO, direction: Vec3::NEG_Z, up: Vec3::Y, projection, shift, motion: None }
+pub(super) fn camera(name: String, Lens { projection, shift, clip: [near, far] }: Lens) -> Camera {
+    let (position, direction, up) = (Vec3::ZERO, Vec3::NEG_Z, Vec3::Y);
+    Camera { name, position, direction, up, projection, shift, near, far, motion: None }
 }
 
 /// What a camera of the document says.
@@ -23,6 +25,8 @@ pub(super) fn camera(name: String, Lens { projection, shift }: Lens) -> Camera {
 pub(super) struct Lens {
     projection: Projection,
     shift: Vec2,
+    /// The depths from and up to which it sees.
+    clip: [f32; 2],
 }
 
 /// That of camera number `index` of the document.
@@ -32,7 +36,11 @@ pub(super) fn lens(path: &Path, index: u32, camera: &document::Camera) -> Result
     if shift.abs().max_element() > LARGEST_SHIFT {
         return Err(malformed(path, format!("camera {index} has extras.lightmesh.shift = {shift}")));
     }
-    Ok(Lens { projection: projection(path, index, camera, &own)?, shift })
+    let clip = [own.near.unwrap_or(0.0), own.far.unwrap_or(f32::INFINITY)];
+    if !(clip[0] >= 0.0 && clip[0] < clip[1]) {
+        return Err(malformed(path, format!("camera {index} has extras.lightmesh.near and far = {clip:?}")));
+    }
+    Ok(Lens { projection: projection(path, index, camera, &own)?, shift, clip })
 }
 
 fn projection(path: &Path, index: u32, camera: &document::Camera, own: &CameraExtras) -> Result<Projection, LoadError> {

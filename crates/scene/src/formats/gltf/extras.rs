@@ -207,6 +207,12 @@ pub(crate) struct CameraExtras {
     /// By how much the image is to the right of the view direction and above it, in heights of the image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) shift: Option<[f32; 2]>,
+    /// The depth from which on it sees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) near: Option<f32>,
+    /// The depth up to which it sees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) far: Option<f32>,
 }
 
 /// Of a scene.

@@ -30,6 +30,7 @@ pub(super) fn read(source: &Source, table: &Spanned<CameraEntry>) -> Result<(Cam
             None => source.missing(table, "up", "the camera looks along Y, the default `up`; add `up = [0, 0, 1]`"),
         });
     };
+    let [near, far] = clip(source, entry)?;
     let camera = Camera {
         name: entry.name.as_ref().map_or(String::new(), |name| name.get_ref().clone()),
         position: Vec3::ZERO,
@@ -37,6 +38,8 @@ pub(super) fn read(source: &Source, table: &Spanned<CameraEntry>) -> Result<(Cam
         up: up.as_vec3(),
         projection: projection(source, table)?,
         shift: entry.shift.as_ref().map_or(Ok(Vec2::ZERO), |shift| source.shift("shift", shift))?,
+        near,
+        far,
         motion: None,
     };
     Ok((camera, position))
@@ -54,6 +57,23 @@ fn view_direction(source: &Source, table: &Spanned<CameraEntry>, position: DVec3
         (Some(_), Some(direction)) => {
             Err(source.refuse("direction", direction, "contradicts `target`", "keep one of them"))
         }
+    }
+}
+
+/// The depths from and up to which a camera sees.
+fn clip(source: &Source, entry: &CameraEntry) -> Result<[f32; 2], LoadError> {
+    let near = match &entry.near {
+        Some(near) if source.number("near", near)? < 0.0 => {
+            return Err(source.refuse("near", near, "is negative", "give a distance from the camera, 0 or more"));
+        }
+        near => near.as_ref().map_or(0.0, |near| *near.get_ref() as f32),
+    };
+    let Some(far) = &entry.far else { return Ok([near, f32::INFINITY]) };
+    let depth = source.positive("far", far)? as f32;
+    if depth > near {
+        Ok([near, depth])
+    } else {
+        Err(source.refuse("far", far, "is not beyond `near`", "give a larger `far`, or a smaller `near`"))
     }
 }
 

@@ -84,6 +84,12 @@ pub(crate) struct CameraEntry {
     /// stay parallel. Default: [0, 0].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) shift: Option<Spanned<[f64; 2]>>,
+    /// The depth from which on surfaces and lights are seen, scene units along the viewing direction. Default: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) near: Option<Number>,
+    /// The depth up to which they are seen. Default: all are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) far: Option<Number>,
     /// How it moves in a film.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) motion: Option<CameraMotionEntry>,

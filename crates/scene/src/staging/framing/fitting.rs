@@ -19,6 +19,8 @@ pub(super) fn framing((sight, subject): (&Sight, &Subject), direction: Vec3, up:
         up: up.axis(),
         projection: Projection::Perspective(Fov::Vertical(VFOV)),
         shift: Vec2::ZERO,
+        near: 0.0,
+        far: f32::INFINITY,
         motion: None,
     };
     camera.position = fitting(sight.mesh(), subject, &camera, aspect, fill);

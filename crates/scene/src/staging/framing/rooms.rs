@@ -154,6 +154,8 @@ fn longest_view(sight: &Sight, bounds: &Bounds, up: Vec3, places: &[Place]) -> C
         up,
         projection: Projection::Perspective(Fov::Vertical(VFOV)),
         shift: Vec2::ZERO,
+        near: 0.0,
+        far: f32::INFINITY,
         motion: None,
     }
 }

@@ -45,6 +45,20 @@ fn a_shift_without_sense_becomes_the_nearest_with_some() {
 }
 
 #[test]
+fn a_camera_sees_some_depths() {
+    let camera = Camera::look_to(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 50.0).unwrap();
+    assert_eq!([camera.near, camera.far], [0.0, f32::INFINITY]);
+    let part = camera.clone().with_clip(0.5, 9.0).unwrap();
+    assert_eq!([part.near, part.far], [0.5, 9.0]);
+    for (near, far) in
+        [(-1.0, 2.0), (2.0, 2.0), (3.0, 2.0), (f32::NAN, 2.0), (0.0, f32::NAN), (f32::INFINITY, f32::INFINITY)]
+    {
+        let error = camera.clone().with_clip(near, far).unwrap_err();
+        assert!(error.to_string().contains(&format!("{near} and {far}")), "{error}");
+    }
+}
+
+#[test]
 fn the_upper_edge_is_up_or_the_back_of_a_plan() {
     assert_eq!(upper_edge(DVec3::NEG_Z, DVec3::Y), DVec3::Y);
     assert_eq!(upper_edge(DVec3::NEG_Y, DVec3::Y), DVec3::NEG_Z);

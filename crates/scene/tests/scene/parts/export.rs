@@ -119,6 +119,9 @@ fn scene(offset: DVec3) -> Scene {
         camera(Projection::Perspective(Fov::Vertical(41.3))).with_shift([0.1, -0.3]),
         camera(Projection::Perspective(Fov::Horizontal(73.1))).with_shift([0.0, 1.7]),
         camera(Projection::Orthographic { height: 7.7 }).with_shift([-1.1, 0.0]),
+        camera(Projection::Perspective(Fov::Vertical(41.3))).with_clip(0.3, 7.9).unwrap(),
+        camera(Projection::Perspective(Fov::Vertical(41.3))).with_clip(0.0, 1e-6).unwrap(),
+        camera(Projection::Orthographic { height: 7.7 }).with_clip(1e9, f32::INFINITY).unwrap(),
     ];
     scene.lights.ambient = Some(Vec3::new(0.1, 0.2, 0.3));
     scene.lights.background = Some(Vec3::new(0.6, 0.75, 0.9));

@@ -180,6 +180,36 @@ fn a_part_of_an_image_says_where_it_lies() {
     }
 }
 
+/// Overscan: what is in the file begins before what is shown.
+#[test]
+fn what_is_around_an_image_says_where_it_lies() {
+    use ::exr::meta::MetaData;
+
+    // Around all of an image of one pixel; beside one of which it has none.
+    for (first, whole) in [([-1, -1], [1, 1]), ([-70, 5], [640, 480])] {
+        let around = layered(2).with_window(first, whole);
+        for &compression in ExrCompression::ALL {
+            let options = SaveOptions::default().with_exr(ExrOptions::default().with_compression(compression));
+            let mut output = Cursor::new(Vec::new());
+            write_layers(&around, around.layers().unwrap(), &options, &mut output).unwrap();
+            let bytes = output.into_inner();
+            let meta = MetaData::read_from_buffered(Cursor::new(&bytes), true).unwrap();
+            let header = &meta.headers[0];
+            let shown = header.shared_attributes.display_window;
+            let size = [shown.size.0, shown.size.1].map(|side| side as u32);
+            assert_eq!(([shown.position.0, shown.position.1], size), ([0, 0], whole), "{compression}");
+            let data = header.own_attributes.layer_position;
+            assert_eq!(
+                ([data.0, data.1], (header.layer_size.0, header.layer_size.1)),
+                (first, (3, 2)),
+                "{compression}"
+            );
+            let back = read(&bytes).unwrap();
+            assert_eq!((back.color(), back.layers()), (around.color(), around.layers()), "{compression}");
+        }
+    }
+}
+
 #[test]
 fn every_compression_and_kind_of_number_comes_back() {
     let frame = layered(2).with_alpha(vec![0.5, 1.0, 0.0, 0.25, 1.0, 0.75]).unwrap();

@@ -5,8 +5,9 @@ use lightmesh_render::internals::stages::{RIM, place_of, places};
 
 #[test]
 fn every_neighborhood_has_all_places() {
-    for (x, y) in [(0, 0), (3, 1), (7, 12)] {
-        let pixels = (0..NEIGHBORHOOD).flat_map(|row| (0..NEIGHBORHOOD).map(move |column| (x + column, y + row)));
+    for (x, y) in [(0, 0), (3, 1), (7, 12), (-3, 2), (-11, -65_536)] {
+        let side = NEIGHBORHOOD as i32;
+        let pixels = (0..side).flat_map(|row| (0..side).map(move |column| (x + column, y + row)));
         let found: BTreeSet<u32> = pixels.map(|(x, y)| place_of([x, y])).collect();
         assert!(found.into_iter().eq(0..FIRST_TARGETS), "{x}, {y}");
     }

@@ -70,6 +70,21 @@ fn cameras_may_have_a_shift() {
     }
 }
 
+/// What other programs write is for their depth buffers.
+#[test]
+fn clip_planes_are_those_of_the_extras() {
+    let mut document = furnished();
+    document["cameras"][0]["perspective"]["znear"] = json!(2.5);
+    document["cameras"][0]["perspective"]["zfar"] = json!(3.5);
+    document["cameras"][1]["extras"] = json!({"lightmesh": {"near": 0.5, "far": 9.0}});
+    let [top, plan] = &open(&document).cameras[..] else { panic!() };
+    assert_eq!([[top.near, top.far], [plan.near, plan.far]], [[0.0, f32::INFINITY], [0.5, 9.0]]);
+    for (near, far) in [(-1.0, 9.0), (9.0, 9.0), (9.5, 9.0)] {
+        document["cameras"][1]["extras"]["lightmesh"] = json!({"near": near, "far": far});
+        assert!(error(&document).contains("camera 1 has extras.lightmesh.near and far = ["), "{}", error(&document));
+    }
+}
+
 #[test]
 fn angles_that_no_camera_has_are_refused() {
     for yfov in [0.0, -1.0, 3.2, 1e300] {

@@ -104,6 +104,8 @@ fn cameras_of_all_sorts() {
         vfov = 40
         hfov = 90
         shift = [0.25, -1]
+        near = 0.5
+        far = 20
         [[sphere]]
         center = [0, 1, 0]
         radius = 1
@@ -116,6 +118,7 @@ fn cameras_of_all_sorts() {
     assert_eq!(both.projection, Projection::Perspective(Fov::Vertical(40.0)));
     assert!(both.up.dot(both.direction).abs() < 1e-6);
     assert_eq!([plan.shift, both.shift], [Vec2::ZERO, Vec2::new(0.25, -1.0)]);
+    assert_eq!([[plan.near, plan.far], [both.near, both.far]], [[0.0, f32::INFINITY], [0.5, 20.0]]);
     assert!(scene.warnings[0].contains("room.toml:13") && scene.warnings[0].contains("vfov"), "{:?}", scene.warnings);
 }
 
@@ -297,7 +300,7 @@ fn a_mirrored_mesh_keeps_its_front() {
 
 /// Text with one mistake, and the expected message. Each names the line and a remedy after the semicolon.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str); 40] = [
+const MISTAKES: [(&str, &str); 44] = [
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = -1", "radius = -1 is not positive, room.toml:3; give a radius above 0"),
     ("[[sphere]]\ncenter = [0, 1, 0]\nradius = nan", "radius = nan is not finite, room.toml:3; "),
     ("[[sphere]]\ncenter = [0, inf, 0]\nradius = 1", "center = [0, inf, 0] is not finite, room.toml:2; "),
@@ -320,6 +323,10 @@ const MISTAKES: [(&str, &str); 40] = [
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nheight = 3", "height = 3 has no meaning in a perspective camera, room.toml:4; "),
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nshift = [0, 1001]", "shift = [0, 1001] is more than 1000 heights of the image, room.toml:4; "),
     ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nshift = [nan, 0]", "shift"),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nnear = -1", "near = -1 is negative, room.toml:4; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nnear = 2\nfar = 2", "far = 2 is not beyond `near`, room.toml:5; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nfar = 0", "far = 0 is not positive, room.toml:4; "),
+    ("[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, 1]\nfar = inf", "far = inf is not finite, room.toml:4; "),
     ("[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\nradius = -1", "radius = -1 is not between 0 and"),
     ("[[light]]\nkind = \"lamp\"\nposition = [0, 0, 0]", "room.toml:2; use a value that is valid for `kind`"),
     ("[[light]]\nkind = \"point\"", "key `position` is missing, room.toml:1; "),
