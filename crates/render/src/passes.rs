@@ -16,6 +16,7 @@ use crate::error::RenderError;
 use crate::plan::Plan;
 use crate::prepared::TransmissionParts;
 use crate::probes::GivenPoints;
+use crate::settings::Glass;
 use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stages::irradiance_cache::Gathering;
@@ -40,7 +41,7 @@ impl<B: Backend> Baking<'_, B> {
     /// Finds what each probe sees of each light. Also returns how many rows of probes were processed at once.
     pub(crate) fn bake(&self, points: &GivenPoints) -> Result<(Visibility, u32), RenderError> {
         let Baking { runner, scene, technique, plan } = self;
-        let stages = technique.stages().len() as u64 + u64::from(plan.is_transmissive);
+        let stages = technique.stages().len() as u64 + u64::from(plan.transmits());
         runner.context.work.expect(points.len() as u64 * stages);
         let at_once = runner.or_evict(|backend| backend.rows_at_once(scene, plan))?;
         let mut all = Visibility::dark(0..plan.lights.lights, points.len());
@@ -83,7 +84,7 @@ struct Light<'a, 'runner, B: Backend> {
 
 impl<B: Backend> Light<'_, '_, B> {
     /// Hands what each surface point of a wave sees of each light to `sink`, group by group of lights. Of a scene with `transmission_parts` only
-    /// what is opaque hides, and the rest transmits.
+    /// what is opaque hides, and the rest transmits, unless the plan has it open or closed.
     fn each_group(
         &self,
         wave: &WaveOf<B>,
@@ -91,9 +92,17 @@ impl<B: Backend> Light<'_, '_, B> {
         sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
         let Light { runner, technique, plan } = self;
-        let Some(TransmissionParts { blockers, transmissive, .. }) = transmission_parts else {
+        let Some(TransmissionParts { blockers, transmissive, gi_occluders }) = transmission_parts else {
             return technique.visibility(runner, wave, plan.lights, sink);
         };
+        match plan.glass {
+            Glass::Tinted => {}
+            Glass::Closed => return technique.visibility(runner, wave, plan.lights, sink),
+            Glass::Open => {
+                let wave = WaveOf::<B> { scene: gi_occluders, ..*wave };
+                return technique.visibility(runner, &wave, plan.lights, sink);
+            }
+        }
         let wave = WaveOf::<B> { scene: blockers, ..*wave };
         let n = runner.backend.ray_count(wave.rays);
         let target = if technique.targets_centers() { ShadowTarget::Center } else { wave.shadow_target() };
@@ -317,7 +326,7 @@ impl<B: Backend> Passes<'_, B> {
         // The technique's stages, gathering, shading; long tests and shading again for each further group.
         let further = self.plan.lights.iter().len() as u64 - 1;
         let gathering = u64::from(self.plan.gathering.is_some());
-        let transmittance = u64::from(self.plan.is_transmissive) * (1 + further);
+        let transmittance = u64::from(self.plan.transmits()) * (1 + further);
         rays * (self.technique.stages().len() as u64 + gathering + transmittance + 1 + 2 * further)
     }
 }
