@@ -11,7 +11,8 @@ use lightmesh_scene::{Light, Lights};
 
 use super::found::SunHours;
 use super::pixel_area::PixelGrid;
-use super::{BYTES_AT_ONCE, MAX_AT_ONCE};
+use super::points::{Finer, Point};
+use super::suns::{BYTES_AT_ONCE, MAX_AT_ONCE};
 
 /// Rows that rest on fewer points are made better.
 pub(super) const ENOUGH: u64 = 16;
@@ -21,19 +22,6 @@ const PARTS: u32 = 8;
 const TILE: u32 = 32;
 /// More points of an object say nothing new; each then stands for several.
 const MOST: usize = 256;
-
-/// A point on an object, the area that it stands for, and its hours.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
-    position: Vec3,
-    normal: Vec3,
-    pub(super) area: f64,
-    pub(super) hours: f64,
-}
-
-/// The points of objects that few pixels show, by their numbers.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Finer(pub(super) BTreeMap<u32, Vec<Point>>);
 
 impl Finer {
     /// Those of an image. `settings` are those of the image, and `suns` those that it was found with.

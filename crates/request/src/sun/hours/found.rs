@@ -3,7 +3,7 @@
 use lightmesh_image::{ExrOptions, Frame, Layers};
 use lightmesh_scene::Camera;
 
-use super::finer::Finer;
+use super::points::Finer;
 use crate::sun::SunStudy;
 
 /// The hours of direct sun of the pixels of an image.

@@ -17,6 +17,7 @@ mod legend;
 mod letters;
 mod picture;
 mod pixel_area;
+mod points;
 mod suns;
 mod table;
 
@@ -38,14 +39,11 @@ use crate::error::{Error, OutputError};
 use crate::files::{publish, ready};
 use crate::host::RENDERING;
 use crate::words::Words;
-use suns::suns;
+use points::Finer;
+use suns::{BYTES_AT_ONCE, MAX_AT_ONCE, suns};
 
-/// Bytes that layers of suns may take at a time.
-const BYTES_AT_ONCE: usize = 256 << 20;
 /// Bytes of the layers of a light in a pixel.
 const BYTES: usize = 16;
-/// More suns at a time hardly save anything.
-const MAX_AT_ONCE: usize = 64;
 /// Materials that a note names.
 const NAMED: usize = 4;
 
@@ -120,9 +118,8 @@ impl SunHours {
         let mask = layers.depth.iter().map(|depth| depth.is_finite()).collect();
         let hours = hours.into_iter().map(|hours| hours as f32).collect();
         let study = study.clone();
-        let found =
-            SunHours { study, exr: ExrOptions::default(), frame, camera, hours, mask, finer: Default::default() };
-        let finer = finer::Finer::of(&found, renderer, prepared, (&settings, suns), observer)?;
+        let found = SunHours { study, exr: ExrOptions::default(), frame, camera, hours, mask, finer: Finer::default() };
+        let finer = Finer::of(&found, renderer, prepared, (&settings, suns), observer)?;
         Ok(SunHours { finer, ..found })
     }
 

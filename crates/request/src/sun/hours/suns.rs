@@ -12,6 +12,10 @@ use lightmesh_scene::{Bounds, Light, LightError, LightKind, SunPosition, Up};
 
 use crate::sun::{SunMoment, SunStudy};
 
+/// Bytes that layers of suns may take at a time.
+pub(super) const BYTES_AT_ONCE: usize = 256 << 20;
+/// More suns at a time hardly save anything.
+pub(super) const MAX_AT_ONCE: usize = 64;
 /// The distance of a sweep in radii of the scene. At the scene's edge its direction is off by the inverse of it, 7 seconds of the sun's way; and
 /// searches for what hides it have a margin of the distance over 2^16.
 const DISTANCE: f32 = 2048.0;
