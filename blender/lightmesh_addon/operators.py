@@ -142,6 +142,8 @@ class LIGHTMESH_OT_sun_hours(StudyOperator, bpy.types.Operator):
         from . import pictures
 
         pictures.show(result)
+        for note in result.notes:
+            self.report({"INFO"}, note)
         return f"Up to {result.values.max():.1f} hours of sun: see the images “{pictures.PICTURE}” and “{pictures.VALUES}”"
 
 

@@ -102,6 +102,7 @@ class LIGHTMESH_PT_sun_study(RenderPanel, bpy.types.Panel):
             column = layout.column(align=True)
             for name in names:
                 column.prop(sun, name)
+        layout.prop(sun, "glass")
         layout.prop(sun, "strength")
         layout.operator("lightmesh.sun_hours", icon="LIGHT_SUN")
         layout.operator("lightmesh.render_day", icon="RENDER_ANIMATION")

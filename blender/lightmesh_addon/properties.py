@@ -50,7 +50,24 @@ class LightmeshSunSettings(bpy.types.PropertyGroup):
     )
     begin: FloatProperty(name="From", min=0.0, max=24.0, default=6.0, precision=2, step=50, description="Hour at which the study begins")
     end: FloatProperty(name="To", min=0.0, max=24.0, default=20.0, precision=2, step=50, description="Hour at which the study ends")
-    step: IntProperty(name="Step", min=1, max=1440, default=15, soft_max=120, description="Minutes from one position of the sun to the next")
+    step: IntProperty(
+        name="Step",
+        min=1,
+        max=1440,
+        default=15,
+        soft_max=120,
+        description="Minutes from one frame of a day to the next. Hours of sun are those of all times, unless a step is set",
+    )
+    glass: EnumProperty(
+        name="Glass",
+        items=(
+            ("OPEN", "Open", "It hides no sun; what is at least half opaque does", 0),
+            ("CLOSED", "Closed", "It hides the sun as a wall does", 1),
+            ("TINTED", "Tinted", "Behind it counts the share of the light that it lets through", 2),
+        ),
+        default="OPEN",
+        description="What panes and other surfaces that let light through do to hours of sun",
+    )
     strength: FloatProperty(
         name="Sky Strength",
         min=0.0,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -40,6 +41,8 @@ class Hours:
 
     png: bytes
     values: np.ndarray
+    #: What surfaces that let light through count as.
+    notes: list[str]
 
 
 @dataclass
@@ -63,18 +66,19 @@ def study(depsgraph: bpy.types.Depsgraph, notes: Notes) -> Study:
     made = exported.scene(view)
     for text in made.warnings:
         notes.add(text)
-    chosen = {**settings.of_scene(scene), **exported.settings, **framing, "sun": day(sun)}
+    chosen = {**settings.of_scene(scene), **exported.settings, **framing, "sun": day(sun), "glass": sun.glass.lower()}
     device = settings.device(scene)
     return Study(made, lambda: session.renderer(*device), chosen, replaced(depsgraph))
 
 
 def day(sun: LightmeshSunSettings) -> str:
-    """The day as `--sun` has it."""
+    """The day as `--sun` has it. A step that nobody set is none: frames have the same one, and hours are those of all times."""
     minutes = round(60.0 * sun.offset)
     offset = f"{'-' if minutes < 0 else '+'}{clock(abs(minutes))}"
     date = f"{sun.year:04}-{sun.month:02}-{sun.day:02}{offset}"
     hours = "-".join(clock(round(60.0 * hour)) for hour in (sun.begin, sun.end))
-    return f"{number(sun.latitude)},{number(sun.longitude)},{date},{hours}/{sun.step}m"
+    step = f"/{sun.step}m" if sun.is_property_set("step") else ""
+    return f"{number(sun.latitude)},{number(sun.longitude)},{date},{hours}{step}"
 
 
 def sky(sun: LightmeshSunSettings) -> str:
@@ -105,7 +109,12 @@ def hours(asked: Study, job: Job) -> Hours:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "hours.png"
         found.save(path)
-        return Hours(path.read_bytes(), found.hours)
+        return Hours(path.read_bytes(), found.hours, about_glass(found.notes))
+
+
+def about_glass(notes: list[str]) -> list[str]:
+    """The notes on glass, in the words of the panel."""
+    return [re.sub(r"glass=(\w+)", lambda name: f"Glass “{name[1].capitalize()}”", note) for note in notes if "glass=" in note]
 
 
 def frames(asked: Study, output: Output, job: Job) -> Day:

@@ -326,6 +326,34 @@ def test_work_beside_the_user() -> None:
     assert context.shown[0] == "begin" and context.shown[-3:] == ["timer", "end", None]
 
 
+def test_glass_is_open_unless_it_is_closed() -> None:
+    """A pane beside the pole, of which the report tells in the words of the panel."""
+    from lightmesh_addon import sun_study
+
+    material = matt("Pane")
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    shader.inputs["Transmission Weight"].default_value = 1.0
+    shader.inputs["Roughness"].default_value = 0.0
+    pane = plane("Window", 0.5, material)
+    pane.location = (0.0, 0.0, 1.0)
+    sun = bpy.context.scene.lightmesh.sun
+    hours = {}
+    for sun.glass in ("OPEN", "CLOSED"):
+        hours[sun.glass] = hours_from(10.0, 14.0).sum()
+    assert hours["CLOSED"] < 0.99 * hours["OPEN"]
+    assert sun_study.about_glass(["64 samples", "glass=closed counts them as walls"]) == ["Glass “Closed” counts them as walls"]
+
+
+def test_a_step_that_nobody_set_is_none() -> None:
+    from lightmesh_addon import sun_study
+
+    sun = bpy.context.scene.lightmesh.sun
+    sun.property_unset("step")
+    assert sun_study.day(sun).endswith("06:00-20:00")
+    sun.step = 20
+    assert sun_study.day(sun).endswith("06:00-20:00/20m")
+
+
 def test_escape_ends_it() -> None:
     """Escape stops the renderer soon; meanwhile no other study begins."""
     settings = bpy.context.scene.lightmesh

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use lightmesh::request::Words;
 use lightmesh::request::files::Files;
 use lightmesh::request::sun::{HoursFormat, SunHours as Hours};
 use lightmesh::request::table::Group;
 use lightmesh::request::{Error, Frames, Order, Plan, Request, Session};
 use lightmesh::{Observer, RenderError, Renderer};
+use lightmesh_files::visible;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -172,6 +174,7 @@ impl Film {
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct SunHours {
     found: Hours,
+    notes: Vec<String>,
 }
 
 impl SunHours {
@@ -181,8 +184,12 @@ impl SunHours {
         production: Production,
         wishes: Wishes,
     ) -> PyResult<SunHours> {
-        let find = |watch: &Watch| production.session(engine, watch)?.sun_hours(engine, watch);
-        Ok(SunHours { found: watch::run(py, wishes, find)?.or_raise()? })
+        let find = |watch: &Watch| {
+            let found = production.session(engine, watch)?.sun_hours(engine, watch)?;
+            Ok::<_, Error>((found, watch.notes()))
+        };
+        let (found, notes) = watch::run(py, wishes, find)?.or_raise()?;
+        Ok(SunHours { found, notes })
     }
 }
 
@@ -206,6 +213,18 @@ impl SunHours {
     #[getter]
     fn table(&self) -> String {
         self.found.table()
+    }
+
+    /// What was chosen and what counts, as sentences: how many materials let light through, and what `glass` makes of them.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.iter().map(|note| visible(note).into_owned()).collect()
+    }
+
+    /// What to know of the table, as sentences: how many objects no pixel sees, and how many rest on few points. Empty if there is nothing.
+    #[getter]
+    fn table_notes(&self) -> Vec<String> {
+        self.found.table_notes(Words::Fields)
     }
 
     /// Writes an exr with the hours, a png with a legend, or a csv with a row for each object. `path` may also be a file that is open for writing

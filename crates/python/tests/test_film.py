@@ -123,6 +123,24 @@ def test_hours_of_direct_sun(renderer, tmp_path):
         found.save(tmp_path / "b.txt")
 
 
+def test_glass_of_hours(renderer, tmp_path):
+    """Panes hide no sun unless they are to, and are told of."""
+    pane = '[[material]]\nname = "pane"\nior = 1.5\nthin = true\n[[plane]]\nname = "window"\npoint = [0, 2, 0]\nnormal = [0, 1, 0]\nsize = [2, 2]\nmaterial = "pane"\n'
+    floor = '[camera]\nposition = [0, 5, 9]\ntarget = [0, 0, 0]\n[[plane]]\nname = "floor"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nsize = [9, 9]\n'
+    (tmp_path / "a.toml").write_text(floor + pane)
+    day = "48,0,2026-06-21Z,08:00-16:00"
+    found = {glass: renderer.sun_hours(tmp_path / "a.toml", sun=day, glass=glass, **SETTINGS) for glass in ("open", "tinted", "closed")}
+    seen = found["open"].mask
+    np.testing.assert_allclose(found["open"].hours[seen], 8.0, atol=1e-3)
+    sums = [float(found[glass].hours.sum()) for glass in ("open", "tinted", "closed")]
+    assert sums[0] > sums[1] + 1.0 > sums[2] + 2.0
+    assert any("glass=closed counts them as walls" in note for note in found["open"].notes)
+    assert any("(glass=tinted)" in note for note in found["tinted"].notes)
+    assert found["open"].table_notes == []
+    with pytest.raises(lightmesh.SettingError, match="sun"):
+        renderer.film("builtin:gazebo", turntable=2, glass="closed", **SETTINGS)
+
+
 def test_no_sun_is_not_no_surface(renderer, scene):
     """The mask is what a frame of the same view sees, and what the table counts."""
     # Of the cube's north, which the sun does not see.
@@ -133,7 +151,7 @@ def test_no_sun_is_not_no_surface(renderer, scene):
     np.testing.assert_array_equal(found.mask, seen)
     assert (found.hours[~found.mask] == 0).all() and (found.hours[found.mask] == 0).any() and (~found.mask).any()
     rows = found.table.strip().splitlines()[1:]
-    assert sum(int(row.rsplit(",", 6)[1]) for row in rows) == found.mask.sum()
+    assert sum(int(row.rsplit(",", 7)[1]) for row in rows) == found.mask.sum()
     with pytest.raises(ValueError, match="WRITEABLE"):
         found.mask.flags.writeable = True
 

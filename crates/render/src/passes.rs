@@ -17,6 +17,7 @@ use crate::plan::Plan;
 use crate::prepared::TransmissionParts;
 use crate::probes::GivenPoints;
 use crate::progress::Pieces;
+use crate::settings::Glass;
 use crate::shadow::ShadowTarget;
 use crate::stage::Stage;
 use crate::stages::irradiance_cache::Gathering;
@@ -89,7 +90,7 @@ struct Light<'a, 'runner, B: Backend> {
 
 impl<B: Backend> Light<'_, '_, B> {
     /// Hands what each surface point of a wave sees of each light to `sink`, group by group of lights. Of a scene with `transmission_parts` only
-    /// what is opaque hides, and the rest transmits.
+    /// what is opaque hides, and the rest transmits, unless the plan has it open or closed.
     fn each_group(
         &self,
         wave: &WaveOf<B>,
@@ -97,9 +98,17 @@ impl<B: Backend> Light<'_, '_, B> {
         sink: &mut VisibilitySink<B>,
     ) -> Result<(), RenderError> {
         let Light { runner, technique, plan } = self;
-        let Some(TransmissionParts { blockers, transmissive, .. }) = transmission_parts else {
+        let Some(TransmissionParts { blockers, transmissive, gi_occluders }) = transmission_parts else {
             return technique.visibility(runner, wave, plan.lights, sink);
         };
+        match plan.glass {
+            Glass::Tinted => {}
+            Glass::Closed => return technique.visibility(runner, wave, plan.lights, sink),
+            Glass::Open => {
+                let wave = WaveOf::<B> { scene: gi_occluders, ..*wave };
+                return technique.visibility(runner, &wave, plan.lights, sink);
+            }
+        }
         let wave = WaveOf::<B> { scene: blockers, ..*wave };
         let n = runner.backend.ray_count(wave.rays);
         let target = if technique.targets_centers() { ShadowTarget::Center } else { wave.shadow_target() };
@@ -414,7 +423,7 @@ fn pieces_of_visibility(technique: &Technique, plan: &Plan, points: f64) -> Piec
     if let Some(&last) = technique.stages().last() {
         pieces = pieces.and(last, (groups - 1.0) * points);
     }
-    let transmissive = if plan.is_transmissive { groups * points } else { 0.0 };
+    let transmissive = if plan.transmits() { groups * points } else { 0.0 };
     pieces.and(Stage::Transmittance, transmissive)
 }
 

@@ -5,6 +5,7 @@ use lightmesh_trace::accel::Hit;
 use crate::antialiasing::Antialiasing;
 use crate::data::lights::LightGroups;
 use crate::data::mattes::{ranks_of, slots_of};
+use crate::settings::Glass;
 use crate::stages::irradiance_cache::Gathering;
 
 /// Bytes that a technique needs per ray at its peak, on the host and on a device, with the shares of lights.
@@ -27,6 +28,8 @@ pub struct Plan {
     pub bounces: u32,
     /// Whether rays may go through surfaces.
     pub is_transmissive: bool,
+    /// What these do to shadows.
+    pub glass: Glass,
     /// In how many directions mirrors reflect a ray, at most.
     pub directions: u32,
     /// Whether the share of a pixel's samples that see anything is kept.
@@ -59,6 +62,11 @@ impl Plan {
     /// Pixels of the image.
     pub fn pixels(&self) -> u64 {
         self.size.map(u64::from).iter().product()
+    }
+
+    /// Whether light is asked for what surfaces leave of it.
+    pub(crate) fn transmits(&self) -> bool {
+        self.is_transmissive && self.glass == Glass::Tinted
     }
 
     /// The rays of a pixel in a wave, at most unless surfaces both mirror and let rays through several times.

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use lightmesh_image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, Transfer, View};
-use lightmesh_render::{Acceleration, AmbientSource, Crop, Device, Filter, Lookup, Mode, Quality, ShortTests, Step};
+use lightmesh_render::{
+    Acceleration, AmbientSource, Crop, Device, Filter, Glass, Lookup, Mode, Quality, ShortTests, Step,
+};
 use lightmesh_scene::{Falloff, Instancing, SceneFormat, Weight};
 
 use crate::table::{Choice, Kind, Minus, Shape, Value};
@@ -176,7 +178,7 @@ items! {
 }
 
 words! {
-    Mode, Lookup, Quality, Filter, ShortTests, AmbientSource, Weight, Falloff, Instancing, SceneFormat, Acceleration, Transfer, View,
+    Mode, Lookup, Quality, Filter, Glass, ShortTests, AmbientSource, Weight, Falloff, Instancing, SceneFormat, Acceleration, Transfer, View,
     ExrSamples, ExrCompression, ExrParts, Switch, UpChoice,
 }
 

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use lightmesh_image::{BitDepth, ExrCompression, ExrParts, ExrSamples, Format, Transfer, View};
-use lightmesh_render::{Acceleration, AmbientSource, Crop, Device, Filter, Lookup, Mode, Quality, ShortTests, Step};
+use lightmesh_render::{
+    Acceleration, AmbientSource, Crop, Device, Filter, Glass, Lookup, Mode, Quality, ShortTests, Step,
+};
 use lightmesh_scene::{Falloff, Instancing, SceneFormat, Weight};
 
 use crate::items::Slot;
@@ -95,8 +97,12 @@ settings! {
     Motion "Film" turntable: Option<u32>, placeholder "N", in 1..=1_000_000, conflicts [sun, partial];
 
     /// Render a day under a clear sky, a frame for each STEP in minutes or hours, as in
-    /// "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m" [default: off]
+    /// "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m"; without STEP every 15 minutes, and hours of sun of all the time
+    /// between [default: off]
     Motion "Film" sun: Option<SunSpec>, placeholder "LAT,LON,DATE,FROM-TO/STEP", conflicts [partial, environment, studio];
+
+    /// Count panes and other surfaces that let light through as this in hours of direct sun
+    Motion "Film" glass: Glass, requires sun, bytes same;
 
     /// Render frames A to B or every N-th of them, or a list as in "7,9,20-30x2", of the scene's animation, `turntable` or
     /// `sun` [default: all, with `fps`, `turntable` or `sun`]

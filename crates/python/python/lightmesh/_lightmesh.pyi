@@ -595,6 +595,12 @@ class SunHours:
     @property
     def table(self) -> str:
         """Hours by object, as the text of a csv file."""
+    @property
+    def notes(self) -> list[str]:
+        """What was chosen and what counts, as sentences: how many materials let light through, and what `glass` makes of them."""
+    @property
+    def table_notes(self) -> list[str]:
+        """What to know of the table, as sentences: how many objects no pixel sees, and how many rest on few points. Empty if there is nothing."""
     def save(self, path: Path | IO[bytes], *, format: Literal["exr", "png", "csv"] | None = None) -> None:
         """Writes an exr with the hours, a png with a legend, or a csv with a row for each object. `path` may also be a file that is open for writing
         bytes: then `format`, "exr", "png" or "csv", is needed. Raises `SaveError`."""

@@ -17,7 +17,9 @@ class _Motion(TypedDict, total=False):
     turntable: int | None
     """Turn the camera once around the scene in N frames; `####` or `%04d` in file names stands for the number of the frame [default: off]"""
     sun: str | None
-    """Render a day under a clear sky, a frame for each STEP in minutes or hours, as in '54.98,82.9,2026-06-21+07:00,06:00-20:00/15m' [default: off]"""
+    """Render a day under a clear sky, a frame for each STEP in minutes or hours, as in '54.98,82.9,2026-06-21+07:00,06:00-20:00/15m'; without STEP every 15 minutes, and hours of sun of all the time between [default: off]"""
+    glass: Literal["open", "closed", "tinted"] | None
+    """Count panes and other surfaces that let light through as this in hours of direct sun [default: open]"""
 
 class _Frames(TypedDict, total=False):
     frames: str | None

@@ -124,6 +124,7 @@ impl<'a> Resolved<'a> {
             antialiasing,
             bounces,
             is_transmissive: scene.is_transmissive(),
+            glass: settings.glass,
             lights,
             most_rows: settings.partial.then(|| bands::rows_in_parts(window.size[1])),
             memory_limit: settings.memory_limit,

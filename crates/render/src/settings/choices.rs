@@ -189,6 +189,45 @@ impl ShadowTests {
 
 parse_by_name!(ShadowTests, "shadow-test method");
 
+/// What surfaces do to shadows that let light through: panes, curtains and bodies of glass. The camera sees them in any case, and what is
+/// [cut out](lightmesh_scene::OpacityMode::Mask) hides where it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Glass {
+    /// Where less than half of the light stops, nothing is hidden; elsewhere they are opaque.
+    #[default]
+    Open,
+    /// They are opaque.
+    Closed,
+    /// They leave as much of the light as they let through.
+    Tinted,
+}
+
+impl Glass {
+    /// All of them; the default comes first.
+    pub const ALL: &'static [Glass] = &[Glass::Open, Glass::Closed, Glass::Tinted];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Glass::Open => "open",
+            Glass::Closed => "closed",
+            Glass::Tinted => "tinted",
+        }
+    }
+
+    /// A short description.
+    pub fn help(self) -> &'static str {
+        match self {
+            Glass::Open => "It hides no sun; what is at least half opaque does",
+            Glass::Closed => "It hides the sun as a wall does",
+            Glass::Tinted => "Behind it counts the share of the light that it lets through",
+        }
+    }
+}
+
+parse_by_name!(Glass, "glass");
+
 /// How good the shadows of lights with a size are, and how much time they may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]

@@ -8,7 +8,9 @@ mod setting;
 use lightmesh_scene::{Camera, Scene, Up, Weight};
 
 pub use acceleration::Acceleration;
-pub use choices::{AmbientSource, Filter, Lookup, Mode, Quality, ShadowTests, Sharing, ShortTests, Step, UnknownStep};
+pub use choices::{
+    AmbientSource, Filter, Glass, Lookup, Mode, Quality, ShadowTests, Sharing, ShortTests, Step, UnknownStep,
+};
 pub use crop::{Crop, UnknownCrop};
 pub use setting::Setting;
 
@@ -57,6 +59,8 @@ pub struct Settings {
     pub short_tests: ShortTests,
     /// How area mode tests the samples of a light.
     pub shadow_tests: ShadowTests,
+    /// What surfaces do to shadows that let light through.
+    pub glass: Glass,
     /// Samples of a light with a size; `None`: by `quality`, 225 in area mode, 4 per light point of a half-ball.
     pub samples: Option<u32>,
     /// The acceleration structure.
@@ -95,6 +99,7 @@ impl Default for Settings {
             sharing: Sharing::Unseen,
             short_tests: ShortTests::Cells,
             shadow_tests: ShadowTests::Rows,
+            glass: Glass::Tinted,
             samples: None,
             acceleration: Acceleration::Auto,
             seed: 0,
@@ -213,6 +218,11 @@ impl Settings {
     /// How area mode tests the samples of a light.
     pub fn with_shadow_tests(self, shadow_tests: ShadowTests) -> Settings {
         Settings { shadow_tests, ..self }
+    }
+
+    /// What surfaces do to shadows that let light through.
+    pub fn with_glass(self, glass: Glass) -> Settings {
+        Settings { glass, ..self }
     }
 
     /// Shadow rays per area light.

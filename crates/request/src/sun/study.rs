@@ -1,13 +1,14 @@
 //! A sun study: the moments of a day at which the sun is above the horizon, its sky at each, and files for the hours of direct sun.
 //!
-//! Each moment stands for the time that is nearer to it than to its neighbours, from the first minute of the study to the last, as far as the
-//! sun is above the horizon then. So the parts of all moments add up to the time of sunshine of an open field. The sun is above the horizon
+//! Each moment stands for a span: the time that is nearer to it than to its neighbours, from the first minute of the study to the last, as far
+//! as the sun is above the horizon then. So the parts of all moments add up to the time of sunshine of an open field. The sun is above the horizon
 //! if the middle of its disc is seen there, with the refraction of an ordinary atmosphere. Sunshine between two moments without sun is not
 //! noticed.
 
 use std::path::{Path, PathBuf};
 
 use lightmesh_files::check_writable;
+use lightmesh_render::Glass;
 use lightmesh_scene::{SkyKind, SunPosition, parse_by_name};
 
 use crate::error::{OutputError, RequestError};
@@ -30,6 +31,8 @@ pub struct SunStudy {
     pub dark: Vec<u32>,
     /// The clear sky, but for its sun.
     pub sky: SkySpec,
+    /// What surfaces that let light through do to the hours of direct sun.
+    pub glass: Glass,
     /// What the hours of direct sun are written to.
     pub outputs: Vec<HoursFile>,
 }
@@ -43,6 +46,8 @@ pub struct SunMoment {
     pub sun: SunPosition,
     /// The hours of sunshine that it stands for.
     pub hours: f64,
+    /// Where the sun stands at the beginning, in the middle and at the end of the time that it stands for.
+    pub span: [SunPosition; 3],
 }
 
 /// A file for hours of direct sun.
@@ -97,17 +102,17 @@ impl SunStudy {
             return Err(RequestError::SunWithoutSky);
         }
         let outputs = order.files.sun_hours.iter().map(|path| hours_file(path, None)).collect::<Result<_, _>>()?;
-        let study = SunStudy::of(spec, sky, outputs);
+        let study = SunStudy { glass: order.request.glass, ..SunStudy::of(spec, sky, outputs) };
         if study.moments.is_empty() && order.files.output.is_some() {
             return Err(RequestError::NoSun { spec });
         }
         Ok(Some(study))
     }
 
-    /// The study of these hours.
+    /// The study of these hours, in which glass is open.
     pub fn of(spec: SunSpec, sky: SkySpec, outputs: Vec<HoursFile>) -> SunStudy {
         let (moments, dark) = moments(&spec);
-        SunStudy { spec, moments, dark, sky, outputs }
+        SunStudy { spec, moments, dark, sky, glass: Glass::Open, outputs }
     }
 
     /// The sky of moment number `index`: the same as of `--sky` with this place and time. If there is none, it is that of another day.
@@ -124,9 +129,9 @@ impl SunStudy {
         self.moments.iter().map(|moment| moment.hours).sum()
     }
 
-    /// Decimals of hours that mean something: multiples of the step can be told apart.
+    /// Decimals of hours that mean something: multiples of the step can be told apart; without one, half a minute can.
     pub(crate) fn decimals(&self) -> usize {
-        if self.spec.step.is_multiple_of(6) { 1 } else { 2 }
+        if self.spec.step.is_some_and(|step| step.is_multiple_of(6)) { 1 } else { 2 }
     }
 
     /// Files of a run that writes hours of direct sun and no image.
@@ -171,7 +176,7 @@ pub(super) fn hours_file(path: &Path, format: Option<HoursFormat>) -> Result<Hou
 
 /// The moments with sun, and those without.
 fn moments(spec: &SunSpec) -> (Vec<SunMoment>, Vec<u32>) {
-    let steps: Vec<u32> = (spec.from..=spec.to).step_by(spec.step as usize).collect();
+    let steps: Vec<u32> = (spec.from..=spec.to).step_by(spec.minutes() as usize).collect();
     let (mut moments, mut dark) = (Vec::new(), Vec::new());
     for (index, &minute) in steps.iter().enumerate() {
         let sun = position(spec, f64::from(minute));
@@ -180,12 +185,14 @@ fn moments(spec: &SunSpec) -> (Vec<SunMoment>, Vec<u32>) {
             continue;
         }
         let before = index.checked_sub(1).map(|before| steps[before]);
-        let minutes = before.map_or(0.0, |before| share(spec, minute, before))
-            + match steps.get(index + 1) {
-                Some(&after) => share(spec, minute, after),
-                None => sunny(spec, minute, spec.to),
-            };
-        moments.push(SunMoment { minute, sun, hours: minutes / 60.0 });
+        let earlier = before.map_or(0.0, |before| share(spec, minute, before));
+        let later = match steps.get(index + 1) {
+            Some(&after) => share(spec, minute, after),
+            None => sunny(spec, minute, spec.to),
+        };
+        let [begin, end] = [-earlier, later].map(|minutes| f64::from(minute) + minutes);
+        let span = [begin, 0.5 * (begin + end), end].map(|minute| position(spec, minute));
+        moments.push(SunMoment { minute, sun, hours: (earlier + later) / 60.0, span });
     }
     (moments, dark)
 }

@@ -28,14 +28,19 @@ pub struct SunSpec {
     pub from: u32,
     /// The last one, up to 24 hours.
     pub to: u32,
-    /// Minutes between moments.
-    pub step: u32,
+    /// Minutes between moments; `None`: 15, and hours of sun are those of all the time between them.
+    pub step: Option<u32>,
 }
 
 /// An example of a whole day.
 const EXAMPLE: &str = "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m";
 
 impl SunSpec {
+    /// Minutes between moments.
+    pub fn minutes(&self) -> u32 {
+        self.step.unwrap_or(USUAL_STEP)
+    }
+
     /// A minute of the day.
     pub fn moment(&self, minute: f64) -> Moment {
         // The end of the day is not a time of it: it is a minute before it in a zone that is a minute behind.
@@ -72,7 +77,8 @@ impl fmt::Display for SunSpec {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let SunSpec { latitude, longitude, from, to, step, .. } = *self;
         let (date, zone, from, to) = (self.date(), self.zone(), clock(from), clock(to));
-        write!(f, "{latitude},{longitude},{date}{zone},{from}-{to}/{step}m")
+        write!(f, "{latitude},{longitude},{date}{zone},{from}-{to}")?;
+        step.map_or(Ok(()), |step| write!(f, "/{step}m"))
     }
 }
 
@@ -99,7 +105,7 @@ impl FromStr for SunSpec {
             minute(text).ok_or_else(|| part(what, text, "hours and minutes of two digits each, up to 24:00", example))
         };
         let (from, to) = (time("the beginning", first, "06:00")?, time("the end", last, "20:00")?);
-        let step = step.map_or(Ok(USUAL_STEP), minutes)?;
+        let step = step.map(minutes).transpose()?;
         let spec = SunSpec { latitude, longitude, date, offset, from, to, step };
         if from >= to {
             return Err(ValueError::OutOfRange {
@@ -203,11 +209,13 @@ mod tests {
             offset: 420,
             from: 360,
             to: 1200,
-            step: 15,
+            step: Some(15),
         };
         assert_eq!(day, expected);
+        let usual = spec("54.98,82.9,2026-06-21+07:00,06:00-20:00").unwrap();
+        assert_eq!((usual, usual.minutes()), (SunSpec { step: None, ..expected }, 15));
         for (text, shown) in [
-            ("54.98,82.9,2026-06-21+07:00,06:00-20:00", "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m"),
+            ("54.98,82.9,2026-06-21+07:00,06:00-20:00", "54.98,82.9,2026-06-21+07:00,06:00-20:00"),
             (" -33.9, 151.2 , 2026-12-21+11:00 , 00:00-24:00 / 1.5h", "-33.9,151.2,2026-12-21+11:00,00:00-24:00/90m"),
             ("1,2,2026-06-21-09:30,23:59-24:00/1m", "1,2,2026-06-21-09:30,23:59-24:00/1m"),
             ("1,2,2026-06-21+7:00,06:00-20:00/1h", "1,2,2026-06-21+07:00,06:00-20:00/60m"),

@@ -28,7 +28,7 @@ mod view;
 
 use std::path::{Path, PathBuf};
 
-use lightmesh_render::{BytesPerRay, LightGroups, Plan};
+use lightmesh_render::{BytesPerRay, Glass, LightGroups, Plan};
 
 /// Libraries without a test harness, so that each is compiled once: a test beside their code would never run.
 const WITHOUT_TESTS: [&str; 3] = ["render", "scene", "image"];
@@ -63,6 +63,7 @@ fn plain(size: [u32; 2], lights: LightGroups, left: Option<u64>) -> Plan {
         antialiasing: None,
         bounces: 0,
         is_transmissive: false,
+        glass: Glass::Tinted,
         directions: 1,
         coverage: false,
         caught: false,

@@ -3,6 +3,7 @@
 use lightmesh_image::{ExrOptions, Frame, Layers};
 use lightmesh_scene::Camera;
 
+use super::points::Finer;
 use crate::sun::SunStudy;
 
 /// The hours of direct sun of the pixels of an image.
@@ -16,6 +17,8 @@ pub struct SunHours {
     pub(super) hours: Vec<f32>,
     /// Whether a pixel sees a surface.
     pub(super) mask: Vec<bool>,
+    /// More points on the objects that few pixels show.
+    pub(super) finer: Finer,
 }
 
 impl SunHours {

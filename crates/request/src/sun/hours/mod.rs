@@ -5,15 +5,20 @@
 //! ```
 //!
 //! S_k is the sun at moment k, t_k the time for which the moment stands, and V the visible share of the sun's disc from the surface point P in
-//! the middle of the pixel, 0 if the sun is behind the surface. Suns of many moments are the lights of one image: camera rays are cast once
-//! for all of them, and neither sky nor reflected light is computed. Light that passes surfaces, such as panes, is counted as far as V says.
+//! the middle of the pixel, 0 if the sun is behind the surface. Where no step is asked for, S_k is all that the disc passes over in that time
+//! ([`suns`]). Suns of many moments are the lights of one image: camera rays are cast once for all of them, and neither sky nor reflected
+//! light is computed. [`Glass`](lightmesh_render::Glass) says what panes and other surfaces do that let light through. Objects that few pixels
+//! show are seen by more [points](finer) for the table.
 
 mod colors;
+mod finer;
 mod found;
 mod legend;
 mod letters;
 mod picture;
 mod pixel_area;
+mod points;
+mod suns;
 mod table;
 
 use std::path::Path;
@@ -21,26 +26,26 @@ use std::time::Instant;
 
 use glam::Vec3;
 use lightmesh_image::{Description, EncodeError, ExrOptions, Format, Frame, Layers, Output, Ready, SaveOptions};
-use lightmesh_render::{AmbientSource, PreparedScene, RenderError, Renderer, Settings};
-use lightmesh_scene::{Light, LightError, Lights, Up};
+use lightmesh_render::{AmbientSource, Glass, PreparedScene, RenderError, Renderer, Settings};
+use lightmesh_scene::{Light, Lights, Scene};
 use rayon::prelude::*;
 
 pub use found::SunHours;
 
 use super::study::hours_file;
-use super::{HoursFile, HoursFormat, SunMoment, SunStudy};
+use super::{HoursFile, HoursFormat, SunStudy};
 use crate::context::Context;
 use crate::error::{Error, OutputError};
 use crate::files::{publish, ready};
 use crate::host::{Host, Part, RENDERING};
 use crate::words::Words;
+use points::Finer;
+use suns::{BYTES_AT_ONCE, MAX_AT_ONCE, suns};
 
-/// Bytes that layers of suns may take at a time.
-const BYTES_AT_ONCE: usize = 256 << 20;
 /// Bytes of the layers of a light in a pixel.
 const BYTES: usize = 16;
-/// More suns at a time hardly save anything.
-const MAX_AT_ONCE: usize = 64;
+/// Materials that a note names.
+const NAMED: usize = 4;
 
 /// Computes the hours of direct sun and writes their files; returns what was done.
 pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context) -> Result<String, Error> {
@@ -52,19 +57,11 @@ pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context
         renderer.install(|| study.outputs.iter().map(|output| found.file(output)).collect::<Result<_, _>>())
     })?;
     publish(files)?;
-    if study.outputs.iter().any(HoursFile::is_table)
-        && let Some(text) = found.unseen(host.words())
-    {
-        host.warning(&text);
+    if study.outputs.iter().any(HoursFile::is_table) {
+        found.table_notes(host.words()).iter().for_each(|text| host.warning(text));
     }
     let names: Vec<String> = study.outputs.iter().map(|output| output.path.display().to_string()).collect();
     Ok(format!("hours of direct sun of {} moments: {seconds:.3} s, {}", study.moments.len(), names.join(", ")))
-}
-
-/// The suns of a study, each with the hours that it shines.
-fn suns(study: &SunStudy, up: Up) -> Result<Vec<(Light, f64)>, LightError> {
-    let sun = |moment: &SunMoment| Ok((moment.sun.light(up, study.sky.sky.north)?, moment.hours));
-    study.moments.iter().map(sun).collect()
 }
 
 impl SunHours {
@@ -72,7 +69,10 @@ impl SunHours {
     pub(crate) fn of_study(study: &SunStudy, prepared: &PreparedScene, context: Context) -> Result<SunHours, Error> {
         let Context { renderer, plan, host, .. } = context;
         let up = plan.staging.up_of(&prepared.scene.lights);
-        let suns = suns(study, up).expect("the sun has a direction");
+        let suns = suns(study, up, prepared.geometry.bounds).expect("the sun has a direction");
+        if let Some(note) = about_glass(&prepared.scene, study.glass, host.words()) {
+            host.note(&note);
+        }
         let found = host.during(RENDERING, || {
             host.cancellable(|| SunHours::of(renderer, prepared, (&plan.settings, study), &suns, host))
         })?;
@@ -87,8 +87,8 @@ impl SunHours {
         suns: &[(Light, f64)],
         host: &dyn Host,
     ) -> Result<SunHours, RenderError> {
-        let mut settings =
-            settings.clone().with_bounces(0).with_ambient_light(AmbientSource::Constant).with_layers(true);
+        let plain = settings.clone().with_bounces(0).with_ambient_light(AmbientSource::Constant).with_layers(true);
+        let mut settings = plain.with_glass(study.glass);
         (settings.aa, settings.transparent, settings.partial) = (Some(1), false, false);
         let camera = settings.camera.clone().unwrap_or_else(|| prepared.scene.cameras[0].clone());
         let [width, height] = settings.crop.map_or(settings.size, |crop| crop.size).map(|side| side as usize);
@@ -118,7 +118,10 @@ impl SunHours {
         let layers = frame.layers().expect("they were asked for");
         let mask = layers.depth.iter().map(|depth| depth.is_finite()).collect();
         let hours = hours.into_iter().map(|hours| hours as f32).collect();
-        Ok(SunHours { study: study.clone(), exr: ExrOptions::default(), frame, camera, hours, mask })
+        let study = study.clone();
+        let found = SunHours { study, exr: ExrOptions::default(), frame, camera, hours, mask, finer: Finer::default() };
+        let finer = Finer::of(&found, renderer, prepared, (&settings, suns), host)?;
+        Ok(SunHours { finer, ..found })
     }
 
     /// The hours as a picture with a legend.
@@ -156,6 +159,11 @@ impl SunHours {
         }
     }
 
+    /// What to know of the [table](SunHours::table), in the words of a face: objects that no pixel sees, and rows that rest on few points.
+    pub fn table_notes(&self, words: Words) -> Vec<String> {
+        [self.unseen(words), self.short(words)].into_iter().flatten().collect()
+    }
+
     /// What to say if pixels show some objects and not others.
     fn unseen(&self, words: Words) -> Option<String> {
         let (unseen, all) = table::unseen(self);
@@ -165,6 +173,21 @@ impl SunHours {
                 "{unseen} of {all} objects {are} seen by no pixel, so the table has no hours of them; choose another camera or more pixels ({}, {})",
                 words.of("camera"),
                 words.of("size")
+            )
+        })
+    }
+
+    /// What to say if some objects are shown by too few points for a mean.
+    fn short(&self, words: Words) -> Option<String> {
+        let short = table::short(self);
+        let objects = if short == 1 { "object rest" } else { "objects rest" };
+        (short > 0).then(|| {
+            format!(
+                "hours of {short} {objects} on fewer than {} points of the surface, see the column `points` of the table; choose more pixels or \
+                 a camera that is nearer ({}, {})",
+                finer::ENOUGH,
+                words.of("size"),
+                words.of("camera")
             )
         })
     }
@@ -202,6 +225,44 @@ impl SunHours {
     fn alpha(&self) -> Vec<f32> {
         self.mask.iter().map(|&sees| f32::from(u8::from(sees))).collect()
     }
+}
+
+/// What to say of surfaces that let light through, if there are any.
+fn about_glass(scene: &Scene, glass: Glass, words: Words) -> Option<String> {
+    let geometry = &scene.geometry;
+    let mut used = vec![false; geometry.materials.len()];
+    geometry.mesh.materials.iter().for_each(|&material| used[material as usize] = true);
+    let names: Vec<&str> = used
+        .iter()
+        .zip(&geometry.materials)
+        .filter_map(|(&used, material)| (used && material.is_transmissive()).then_some(&*material.name))
+        .collect();
+    let what = match &names[..] {
+        [] => return None,
+        [""] => "1 material lets light through".to_owned(),
+        [name] => format!("1 material lets light through ({name})"),
+        names => {
+            let first: Vec<&str> = names.iter().copied().filter(|name| !name.is_empty()).take(NAMED).collect();
+            let more = if names.len() > first.len() { ", …" } else { "" };
+            let first = if first.is_empty() { String::new() } else { format!(" ({}{more})", first.join(", ")) };
+            format!("{} materials let light through{first}", names.len())
+        }
+    };
+    Some(match glass {
+        Glass::Closed => {
+            format!("{what}: in hours of direct sun they hide the sun as walls do ({})", words.with("glass", glass))
+        }
+        Glass::Tinted => format!(
+            "{what}: in hours of direct sun what is behind counts by the share of light that passes ({})",
+            words.with("glass", glass)
+        ),
+        _ => format!(
+            "{what}: in hours of direct sun they are open, and hide the sun only where they are at least half opaque; {} counts them as walls, {} \
+             by the share of light that passes",
+            words.with("glass", Glass::Closed),
+            words.with("glass", Glass::Tinted)
+        ),
+    })
 }
 
 /// The frame without what belongs to single lights.

@@ -51,14 +51,14 @@ fn caption(study: &SunStudy) -> String {
     let side = |degrees: f64, [positive, negative]: [&str; 2]| {
         format!("{} {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
     };
+    let step = spec.step.map_or(String::new(), |step| format!(", every {step} min"));
     format!(
-        "Direct sun on {}, {}-{} ({zone}), at {} {}, every {} min. Grey: no surface.",
+        "Direct sun on {}, {}-{} ({zone}), at {} {}{step}. Grey: no surface.",
         spec.date(),
         clock(spec.from),
         clock(spec.to),
         side(spec.latitude, ["N", "S"]),
         side(spec.longitude, ["E", "W"]),
-        spec.step
     )
 }
 

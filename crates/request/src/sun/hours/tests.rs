@@ -1,7 +1,7 @@
 //! Hours of direct sun where they are known.
 
 use lightmesh_render::{Device, Unobserved};
-use lightmesh_scene::{Camera, Scene};
+use lightmesh_scene::{Bounds, Camera, LightKind, Scene, SunPosition, Up};
 
 use super::*;
 use crate::value::SkySpec;
@@ -12,6 +12,8 @@ const PLAN: &str = "[camera]\nposition = [0, 50, 0]\ntarget = [0, 0, 0]\nup = [0
 /// Two units wide and deep, three high.
 const BOX: &str = "[[box]]\nname = \"house\"\ncenter = [0, 1.5, 0]\nsize = [2, 3, 2]\n";
 const SIZE: [u32; 2] = [96, 96];
+/// Discs do not depend on the scene.
+const NOWHERE: Bounds = Bounds { min: Vec3::ZERO, max: Vec3::ZERO };
 const HALF: Vec3 = Vec3::new(1.0, 1.5, 1.0);
 
 fn study(text: &str) -> SunStudy {
@@ -19,14 +21,19 @@ fn study(text: &str) -> SunStudy {
 }
 
 fn hours_of(scene: &str, study: &SunStudy) -> SunHours {
+    hours_of_size(scene, study, SIZE)
+}
+
+fn hours_of_size(scene: &str, study: &SunStudy, size: [u32; 2]) -> SunHours {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene).unwrap();
     let scene = Scene::open(&path).unwrap();
     let renderer = Renderer::new(Device::Cpu).unwrap();
-    let settings = Settings::default().with_size(SIZE);
+    let settings = Settings::default().with_size(size);
     let prepared = renderer.prepare(&scene, &settings, &Unobserved).unwrap();
-    SunHours::of(&renderer, &prepared, (&settings, study), &suns(study, Up::Y).unwrap(), &Unobserved).unwrap()
+    let suns = suns(study, Up::Y, prepared.geometry.bounds).unwrap();
+    SunHours::of(&renderer, &prepared, (&settings, study), &suns, &Unobserved).unwrap()
 }
 
 /// Whether a ray from a point meets the box.
@@ -54,7 +61,7 @@ fn an_open_field_has_the_sun_of_the_whole_day() {
 #[test]
 fn the_shadow_of_a_box_is_that_of_its_edges() {
     let study = study("48,0,2026-04-20Z,07:00-17:00/30m");
-    let (found, suns) = (hours_of(&format!("{PLAN}{BOX}"), &study), suns(&study, Up::Y).unwrap());
+    let (found, suns) = (hours_of(&format!("{PLAN}{BOX}"), &study), suns(&study, Up::Y, NOWHERE).unwrap());
     let (layers, mut uncertain, mut shaded) = (found.layers(), 0.0, 0);
     for (pixel, &hours) in found.hours.iter().enumerate() {
         let point = Vec3::from_array(layers.position[pixel]);
@@ -66,7 +73,7 @@ fn the_shadow_of_a_box_is_that_of_its_edges() {
         // The rim of the sun, and a little more: where all of it agrees, there is all of the light or none.
         let (mut least, mut most) = (0.0, 0.0);
         for (sun, time) in &suns {
-            let lightmesh_scene::LightKind::Directional { direction, angle } = sun.kind else { panic!() };
+            let LightKind::Directional { direction, angle } = sun.kind else { panic!() };
             let (right, above) = direction.any_orthonormal_pair();
             let rim = |number: u8| {
                 let (sin, cos) = (f32::from(number) * std::f32::consts::TAU / 16.0).sin_cos();
@@ -131,7 +138,7 @@ fn the_table_sums_what_is_seen() {
     // A pixel is an eighth wide: the roof has 16 × 16 of them.
     assert_eq!([house[0], ground[0]], [256.0, 96.0 * 96.0 - 256.0]);
     assert!((house[1] - 4.0).abs() < 1e-4 && (ground[1] - 140.0).abs() < 1e-3, "{table}");
-    assert_eq!(house[2..], [10.0, 10.0, 10.0, 1.0]);
+    assert_eq!(house[2..], [10.0, 10.0, 10.0, 1.0, 256.0]);
     let sum: f64 = found.hours.iter().map(|&hours| f64::from(hours)).sum();
     let by_object = ground[0] * ground[2] + house[0] * house[2];
     assert!((sum - by_object).abs() < 1e-3 * sum, "{sum} {by_object}");
@@ -145,7 +152,7 @@ fn a_polar_night_has_no_hours_and_a_polar_day_all() {
     let found = hours_of(&format!("{PLAN}{BOX}"), &night);
     assert!(found.hours().iter().all(|&hours| hours == 0.0) && found.mask().iter().all(|&sees| sees));
     let table = found.table();
-    assert!(table.contains("\nhouse,256,4.000000,0.0,0.0,0.0,0.0000\n"), "{table}");
+    assert!(table.contains("\nhouse,256,4.000000,0.0,0.0,0.0,0.0000,256\n"), "{table}");
     for &format in HoursFormat::ALL {
         found.encode(format).unwrap_or_else(|error| panic!("{format}: {error}"));
     }
@@ -160,7 +167,7 @@ fn objects_that_no_pixel_sees_are_in_the_table() {
     assert_eq!(table::unseen(&found), (1, 3));
     let table = found.table();
     assert!(
-        table.contains("\n'=cellar,0,0,,,,\n") && table.contains("\nhouse,256,4.000000,1.0,1.0,1.0,0.0000\n"),
+        table.contains("\n'=cellar,0,0,,,,,0\n") && table.contains("\nhouse,256,4.000000,1.0,1.0,1.0,0.0000,256\n"),
         "{table}"
     );
 }
@@ -185,4 +192,106 @@ fn what_leans_shows_more_of_itself() {
     }
     let leaning = grid.area([31, 31], 3.0, Vec3::new(0.0, 0.6, 0.8));
     assert!((leaning / grid.area([31, 31], 3.0, Vec3::Z) - 1.25).abs() < 0.02);
+}
+
+/// Hours of the pixels of the ground, under `above`.
+fn ground_under(above: &str, glass: Glass) -> Vec<f32> {
+    let study = SunStudy { glass, ..study("48,0,2026-04-20Z,08:00-16:00/1h") };
+    let found = hours_of(&format!("{PLAN}{above}"), &study);
+    let positions = found.layers().position.iter();
+    found.hours.iter().zip(positions).filter(|(_, position)| position[1] < 0.01).map(|(&hours, _)| hours).collect()
+}
+
+#[test]
+fn glass_is_open_unless_it_is_closed_or_tinted() {
+    let pane = |material: &str| {
+        format!(
+            "[[material]]\nname = \"m\"\n{material}\n[[plane]]\npoint = [0, 4, 0]\nnormal = [0, 1, 0]\nsize = [2, 2]\nmaterial = \"m\"\n"
+        )
+    };
+    let body = |material: &str| format!("[[material]]\nname = \"m\"\n{material}\n{BOX}material = \"m\"\n");
+    let wall = "kd = [0.5, 0.5, 0.5]";
+    for (form, glass) in [
+        (&pane as &dyn Fn(&str) -> String, "ior = 1.5\nthin = true\nfilter = [0.5, 0.5, 0.5]"),
+        (&pane, "kd = [0.5, 0.5, 0.5]\nopacity = 0.3"),
+        (&body, "ior = 1.5\nabsorption = [1, 1, 1]"),
+    ] {
+        let of = |kind| ground_under(&form(glass), kind);
+        let (open, closed, tinted) = (of(Glass::Open), of(Glass::Closed), of(Glass::Tinted));
+        // Nothing hides the sun, or what a wall hides.
+        assert!(open.iter().all(|hours| (hours - 8.0).abs() < 1e-3), "{glass}: {open:?}");
+        assert_eq!(closed, ground_under(&form(wall), Glass::Open), "{glass}");
+        let [open, closed, tinted] = [open, closed, tinted].map(|hours| hours.iter().sum::<f32>());
+        assert!(
+            closed < 0.99 * open && closed + 1.0 < tinted && tinted + 1.0 < open,
+            "{glass}: {closed} {tinted} {open}"
+        );
+    }
+    // What is at least half opaque stays a wall.
+    let curtain = pane("kd = [0.5, 0.5, 0.5]\nopacity = 0.7");
+    assert_eq!(ground_under(&curtain, Glass::Open), ground_under(&pane(wall), Glass::Open));
+}
+
+#[test]
+fn hours_without_a_step_are_those_of_all_times() {
+    let study = study("48,0,2026-04-20Z,07:00-17:00");
+    let found = hours_of(&format!("{PLAN}{BOX}"), &study);
+    // The middle of the sun, every 20 seconds: where its disc has a size, the error of that is as often on either side.
+    let each = 1.0 / 180.0;
+    let ways: Vec<Vec3> = (0..1800)
+        .map(|number| {
+            let minute = 7.0 * 60.0 + 60.0 * each * (f64::from(number) + 0.5);
+            let place = SunPosition::of(48.0, 0.0, &study.spec.moment(minute)).unwrap();
+            let LightKind::Directional { direction, .. } = place.light(Up::Y, 0.0).unwrap().kind else { panic!() };
+            -direction
+        })
+        .collect();
+    let (mut error, mut count, layers) = (0.0, 0, found.layers());
+    for (pixel, &hours) in found.hours.iter().enumerate() {
+        let point = Vec3::from_array(layers.position[pixel]);
+        if point.y < 0.1 {
+            let lit = ways.iter().filter(|&&way| !meets_box(point + 1e-4 * Vec3::Y, way)).count();
+            error += (lit as f64 * each - f64::from(hours)).abs();
+            count += 1;
+        }
+    }
+    let mean = error / f64::from(count);
+    assert!(mean < 0.004, "{mean} h");
+    assert!(found.table().contains("\nhouse,256,4.000000,10.00,10.00,10.00,"), "{}", found.table());
+}
+
+#[test]
+fn objects_of_few_pixels_are_seen_by_more_points() {
+    // Beside the house, half of it in its shadow at some time: two pixels wide, and half of one.
+    let small = "[[box]]\nname = \"sill\"\ncenter = [-1.2, 0.5, 0.4]\nsize = [0.25, 0.02, 0.25]\n\
+                 [[box]]\nname = \"post\"\ncenter = [-1.6, 0.5, 0.06]\nsize = [0.13, 1, 0.13]\n";
+    let scene = format!("{PLAN}{BOX}{small}");
+    let study = study("48,0,2026-04-20Z,07:00-17:00/30m");
+    let row = |found: &SunHours, name: &str| -> Vec<f64> {
+        let table = found.table();
+        let line = table.lines().find(|line| line.starts_with(&format!("{name},"))).unwrap().to_owned();
+        line.split(',').skip(1).map(|number| number.parse().unwrap()).collect()
+    };
+    let (coarse, fine) = (hours_of(&scene, &study), hours_of_size(&scene, &study, SIZE.map(|side| 8 * side)));
+    for name in ["sill", "post"] {
+        let (few, many) = (row(&coarse, name), row(&fine, name));
+        assert!(few[0] < 10.0 && few[6] >= 16.0 && many[0] >= 64.0 && many[6] == many[0], "{name}: {few:?} {many:?}");
+        assert!((few[1] / many[1] - 1.0).abs() < 0.2, "{name}: {few:?} {many:?}");
+        assert!((few[2] - many[2]).abs() < 0.11, "{name}: {few:?} {many:?}");
+    }
+    assert_eq!((table::short(&coarse), table::short(&fine)), (0, 0));
+    // The image, and rows of many pixels, are what they are.
+    assert_eq!(row(&coarse, "house"), [256.0, 4.0, 10.0, 10.0, 10.0, 1.0, 256.0]);
+    let whole: f64 = ["house", "sill", "post"].iter().map(|name| row(&coarse, name)[0]).sum();
+    assert!(whole < 280.0);
+}
+
+#[test]
+fn objects_of_too_few_points_are_told() {
+    // A wire of which an eighth of a pixel is seen.
+    let wire = "[[box]]\nname = \"wire\"\ncenter = [-1.0625, 4, 1.0625]\nsize = [0.02, 0.02, 0.02]\n";
+    let found = hours_of(&format!("{PLAN}{wire}"), &study("48,0,2026-04-20Z,12:00-13:00/30m"));
+    assert_eq!(table::short(&found), 1, "{}", found.table());
+    let text = found.short(Words::Flags).unwrap();
+    assert!(text.contains("hours of 1 object rest on fewer than 16 points") && text.contains("--size"), "{text}");
 }
