@@ -32,6 +32,7 @@ use crate::failure::{Failure, INTERRUPTED, UNABLE};
 /// panics, the limit of memory.
 pub fn run_command(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    lightmesh_files::look_at_output();
     panic::set_hook(Box::new(report_fault));
     color::set(color::asked(arguments.iter().cloned()));
     let result = panic::catch_unwind(|| match parse(&arguments, Styles::plain()) {

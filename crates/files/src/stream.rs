@@ -5,6 +5,10 @@ use std::fs::File;
 use std::fs::{self, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether standard output was closed when that was looked at.
+static CLOSED: AtomicBool = AtomicBool::new(false);
 
 /// Something that is not replaced by renaming.
 #[derive(Debug)]
@@ -32,6 +36,7 @@ impl Stream {
     /// Opens it for writing. For a pipe this waits until there is a reader.
     pub(crate) fn open(&self) -> io::Result<Box<dyn Write>> {
         Ok(match self {
+            Stream::Stdout if is_output_closed() => return Err(closed_output()),
             Stream::Stdout => Box::new(io::stdout().lock()),
             Stream::Stderr => Box::new(io::stderr().lock()),
             Stream::Named(path) => {
@@ -41,6 +46,25 @@ impl Stream {
             }
         })
     }
+}
+
+/// Finds out whether standard output is closed, as by `>&-` in a shell. Rust's runtime opens `/dev/null` in its place before `main`, and calls what is
+/// written to a closed one written: so a program asks before its `main`, and a library when it is called.
+pub fn look_at_output() {
+    #[cfg(unix)]
+    if rustix::io::fcntl_getfd(rustix::stdio::stdout()).is_err() {
+        CLOSED.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Whether standard output was closed when [`look_at_output`] was called.
+pub fn is_output_closed() -> bool {
+    CLOSED.load(Ordering::Relaxed)
+}
+
+/// The error of writing to closed standard output.
+pub fn closed_output() -> io::Error {
+    io::Error::other("it is closed")
 }
 
 /// Whether what is written to `path` goes where standard output goes.

@@ -97,8 +97,7 @@ settings! {
     Motion "Film" turntable: Option<u32>, placeholder "N", in 1..=1_000_000, conflicts [sun, partial];
 
     /// Render a day under a clear sky, a frame for each STEP in minutes or hours, as in
-    /// "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m"; without STEP every 15 minutes, and hours of sun of all the time
-    /// between [default: off]
+    /// "54.98,82.9,2026-06-21+07:00,06:00-20:00/15m"; hours need no STEP [default: off]
     Motion "Film" sun: Option<SunSpec>, placeholder "LAT,LON,DATE,FROM-TO/STEP", conflicts [partial, environment, studio];
 
     /// Count panes and other surfaces that let light through as this in hours of direct sun
@@ -201,8 +200,8 @@ settings! {
     /// Set width and height in pixels
     Image "Image" size: Size, placeholder "WxH";
 
-    /// Render only this part: column and row of its first pixel, width and height; its pixels stay the same. Beyond the
-    /// edges, also to the left of column 0 and above row 0, the view goes on [default: the whole image]
+    /// Render only this part, also beyond the edges: column and row of its first pixel, width and height; pixels stay the
+    /// same [default: the whole image]
     Image "Image" crop: Option<Crop>, placeholder "X,Y,W,H";
 
     /// Set the background: one number, r,g,b, "#rrggbb" (sRGB) or transparent, which gives png and exr files an alpha

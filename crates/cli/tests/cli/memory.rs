@@ -128,3 +128,20 @@ fn the_limit_of_the_address_space_is_seen() {
         assert_refused(&place, &done, what);
     }
 }
+
+/// What is set aside is what it takes: not more for a panorama than its texels with all that is made of them, nor for the light that one pixel gathers
+/// than for that of many.
+#[test]
+fn what_takes_little_fits() {
+    let place = Place::new();
+    let mut panorama = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1024 +X 2048\n".to_vec();
+    panorama.resize(panorama.len() + 4 * 2048 * 1024, 128);
+    std::fs::write(place.path("sky.hdr"), panorama).unwrap();
+    let pixel = ["--size", "1x1", "--aa", "1", "--memory-limit"];
+    for flags in [&["--environment", "sky.hdr", "--ambient-light", "constant", "110M"][..], &["--sky", "clear", "100M"]]
+    {
+        let [flags @ .., limit] = flags else { unreachable!() };
+        let done = render(&place, "room.toml", &[flags, &pixel, &[*limit]].concat());
+        assert_eq!(done.code, Some(0), "{flags:?}: {done:?}");
+    }
+}

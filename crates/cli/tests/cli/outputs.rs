@@ -240,3 +240,23 @@ fn links_do_not_hide_that_files_are_the_same() {
     symlink("/dev/null", place.path("null.png")).unwrap();
     assert_eq!(run(&place, "\"$0\" \"$@\"", &["-o", "null.png", "--stats", "/dev/null"]).code, Some(0));
 }
+
+/// Rust's runtime opens /dev/null in place of a closed standard output, where a picture would be lost without a word.
+#[test]
+fn closed_standard_output_is_told_before_anything_is_done() {
+    let place = Place::new();
+    let with = |end: &str, words: &str| -> Done {
+        place.shell(&format!("\"$0\" {words} {end}"), &[]).output().unwrap().into()
+    };
+    let render = "render room.toml --size 16x12 --aa 1";
+    let [dash, device] = ["-", "/dev/stdout"].map(|output| format!("{render} -o {output} --format png"));
+    for words in [&dash, &device, "info room.toml"] {
+        let done = with(">&-", words);
+        assert_eq!(done.code, Some(2), "{words}: {done:?}");
+        assert!(done.stderr.contains("cannot write to standard output: it is closed"), "{words}: {done:?}");
+        assert!(!done.stderr.contains("samples"), "nothing is rendered: {done:?}");
+    }
+    assert_eq!(with(">&-", &format!("{render} -o a.png")).code, Some(0));
+    // Somebody wants nothing.
+    assert_eq!(with(">/dev/null", &dash).code, Some(0));
+}

@@ -13,8 +13,8 @@ use crate::{Environment, Up};
 
 /// The longest side, in texels.
 const MAX_SIDE: u32 = 32768;
-/// Bytes of a texel, of its means, and while it is decoded: four floats, and as many of the file.
-const BYTES_PER_TEXEL: u64 = 12 + 16 + 32;
+/// Bytes of a texel: three floats, and four of its means; or while it is decoded, which is more, four floats twice.
+const BYTES_PER_TEXEL: u64 = 32;
 /// No texel of a compressed file takes less than this: run lengths in HDR files, and deflate.
 const MAX_TEXELS_PER_BYTE: u64 = 1032;
 /// Radiances above this are errors of cameras and programs.

@@ -43,7 +43,7 @@ pub(crate) use sources::Sources;
 /// Surface points that are processed at once.
 const POINTS_AT_ONCE: usize = 1 << 16;
 /// Rays that are cast at once: the more the better for many processors, unless memory is scarce.
-const RAYS_AT_ONCE: [usize; 2] = [1 << 18, 1 << 16];
+const RAYS_AT_ONCE: [usize; 3] = [1 << 18, 1 << 16, 1 << 14];
 /// Records of an image are computed in steps, the first of which has one of so many, and each at most one of so many:
 const FIRST_STEP: usize = 256;
 const STEPS: usize = 32;
@@ -75,6 +75,7 @@ pub struct Gathering {
     /// Whether each surface point gathers for itself.
     brute_force: bool,
     rays_at_once: usize,
+    points_at_once: usize,
     /// What is kept is dropped when it takes more bytes than this.
     most_kept: Option<u64>,
 }
@@ -89,8 +90,9 @@ impl Gathering {
         };
         let rays = RecordRays { coarse: coarse.map(HemisphereRays::new), fine: HemisphereRays::new(fine) };
         let least_level = level_of(MIN_SIZE * bounds.farthest()).0;
-        let [many, few] = RAYS_AT_ONCE;
-        let is_scarce = left.is_some_and(|left| BYTES_OF_RAY * many as u64 > left / PART_FOR_RAYS);
+        let fits = |rays: &usize| left.is_none_or(|left| BYTES_OF_RAY * *rays as u64 <= left / PART_FOR_RAYS);
+        let [.., fewest] = RAYS_AT_ONCE;
+        let [width, height] = view.size();
         Gathering {
             eye: view.origin(),
             spacing: view.spacing(),
@@ -98,7 +100,8 @@ impl Gathering {
             least_level,
             rays,
             brute_force: false,
-            rays_at_once: if is_scarce { few } else { many },
+            rays_at_once: RAYS_AT_ONCE.into_iter().find(fits).unwrap_or(fewest),
+            points_at_once: POINTS_AT_ONCE.min((u64::from(width) * u64::from(height)) as usize),
             most_kept: left.map(|left| left / PART_KEPT),
         }
     }
@@ -126,7 +129,7 @@ impl Gathering {
 
     /// Bytes that it needs on the host, besides the image.
     pub(crate) fn memory(&self) -> u64 {
-        let at_once = BYTES_OF_RAY * self.rays_at_once as u64 + BYTES_OF_POINT * POINTS_AT_ONCE as u64;
+        let at_once = BYTES_OF_RAY * self.rays_at_once as u64 + BYTES_OF_POINT * self.points_at_once as u64;
         at_once + self.most_kept.unwrap_or(0)
     }
 

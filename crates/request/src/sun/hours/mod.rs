@@ -250,15 +250,15 @@ fn about_glass(scene: &Scene, glass: Glass, words: Words) -> Option<String> {
     };
     Some(match glass {
         Glass::Closed => {
-            format!("{what}: in hours of direct sun they hide the sun as walls do ({})", words.with("glass", glass))
+            format!("{what}: hours of direct sun count this as walls ({})", words.with("glass", glass))
         }
         Glass::Tinted => format!(
-            "{what}: in hours of direct sun what is behind counts by the share of light that passes ({})",
+            "{what}: hours of direct sun count what is behind by the share of light that passes ({})",
             words.with("glass", glass)
         ),
         _ => format!(
-            "{what}: in hours of direct sun they are open, and hide the sun only where they are at least half opaque; {} counts them as walls, {} \
-             by the share of light that passes",
+            "{what}: hours of direct sun count this as open, except where it is at least half opaque; {} counts it as walls, {} by the share \
+             of light that passes",
             words.with("glass", Glass::Closed),
             words.with("glass", Glass::Tinted)
         ),
