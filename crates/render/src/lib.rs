@@ -39,6 +39,7 @@ mod shadow;
 mod stage;
 mod stages;
 mod stats;
+mod steps;
 mod surface;
 mod sync;
 mod techniques;

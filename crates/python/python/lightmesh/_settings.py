@@ -17,7 +17,7 @@ class _Motion(TypedDict, total=False):
     turntable: int | None
     """Turn the camera once around the scene in N frames; `####` or `%04d` in file names stands for the number of the frame [default: off]"""
     sun: str | None
-    """Render a day under a clear sky, a frame for each STEP in minutes or hours, as in '54.98,82.9,2026-06-21+07:00,06:00-20:00/15m'; without STEP every 15 minutes, and hours of sun of all the time between [default: off]"""
+    """Render a day under a clear sky, a frame for each STEP in minutes or hours, as in '54.98,82.9,2026-06-21+07:00,06:00-20:00/15m'; hours need no STEP [default: off]"""
     glass: Literal["open", "closed", "tinted"] | None
     """Count panes and other surfaces that let light through as this in hours of direct sun [default: open]"""
 
@@ -65,7 +65,7 @@ class _Image(TypedDict, total=False):
     size: tuple[int, int] | str | None
     """Set width and height in pixels [default: 1024x1024]"""
     crop: tuple[int, int, int, int] | str | None
-    """Render only this part: column and row of its first pixel, width and height; its pixels stay the same. Beyond the edges, also to the left of column 0 and above row 0, the view goes on [default: the whole image]"""
+    """Render only this part, also beyond the edges: column and row of its first pixel, width and height; pixels stay the same [default: the whole image]"""
     background: _Color | str | None
     """Set the background: one number, r,g,b, '#rrggbb' (sRGB) or transparent, which gives png and exr files an alpha channel [default: the scene's, else black or the studio's]"""
     ground: bool | None

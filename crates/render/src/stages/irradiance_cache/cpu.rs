@@ -13,8 +13,8 @@ use super::lookup::{Links, Place};
 use super::scene::Scene;
 use super::{Gathering, POINTS_AT_ONCE};
 use crate::data::wave::HostWave;
-use crate::progress::Steps;
 use crate::shading::normal_seen;
+use crate::steps::Steps;
 use crate::surface::SurfacePoint;
 
 /// What was gathered for a scene.

@@ -21,7 +21,7 @@ use super::light::Light;
 use super::lookup::{Link, Links, Place};
 use super::rays::Cast;
 use super::scene::Scene;
-use crate::progress::{Steps, spread};
+use crate::steps::{Steps, spread};
 
 /// What coarse records know.
 pub(super) struct CoarseRecords<'a> {

@@ -15,8 +15,8 @@ use super::device::{Device, read_count};
 use super::hemisphere_rays::{DeviceHemisphereRays, Records, taken};
 use crate::error::RenderError;
 use crate::gpu::Cuda;
-use crate::progress::Steps;
 use crate::stages::irradiance_cache::hemisphere_rays::RecordRays;
+use crate::steps::Steps;
 
 /// What fine records receive, by the number of its value.
 pub(super) struct DeviceFine<R: Runtime> {
