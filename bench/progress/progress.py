@@ -36,7 +36,7 @@ RENDERS = {
     "glass": ("chess/chess-board.glb", (100, 75), "--sky clear"),
     "room": ("cornell_gltf/cornellBox.gltf", (120, 120), ""),
     "film": ("builtin:childpark", (320, 240), "--turntable 40 -o f.###.png"),
-    "day": ("builtin:childpark", (160, 120), f"--sun {DAY}/1h --sun-hours h.exr -o f.###.png"),
+    "day": ("builtin:childpark", (64, 48), f"--sun {DAY}/1h --sun-hours h.exr -o f.###.png"),
     "hours": ("builtin:childpark", (640, 480), f"--sun {DAY}/2m --sun-hours h.exr"),
 }
 

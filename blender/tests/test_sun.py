@@ -12,7 +12,7 @@ import OpenEXR
 import pytest
 from lightmesh_addon import output, pictures, session
 from lightmesh_addon.operators import StudyOperator
-from support import box, camera, light, link, look_at, matt, plane, world
+from support import box, camera, light, link, look_at, matt, plane, principled, world
 
 SIDE = 48
 #: Scene units that the picture shows from its middle to its edge.
@@ -330,18 +330,14 @@ def test_glass_is_open_unless_it_is_closed() -> None:
     """A pane beside the pole, of which the report tells in the words of the panel."""
     from lightmesh_addon import sun_study
 
-    material = matt("Pane")
-    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
-    shader.inputs["Transmission Weight"].default_value = 1.0
-    shader.inputs["Roughness"].default_value = 0.0
-    pane = plane("Window", 0.5, material)
+    pane = plane("Window", 0.5, principled("pane", Transmission_Weight=1.0, Roughness=0.0))
     pane.location = (0.0, 0.0, 1.0)
     sun = bpy.context.scene.lightmesh.sun
     hours = {}
     for sun.glass in ("OPEN", "CLOSED"):
         hours[sun.glass] = hours_from(10.0, 14.0).sum()
     assert hours["CLOSED"] < 0.99 * hours["OPEN"]
-    assert sun_study.about_glass(["64 samples", "glass=closed counts them as walls"]) == ["Glass “Closed” counts them as walls"]
+    assert sun_study.about_glass(["64 samples", "glass=closed counts it as walls"]) == ["Glass “Closed” counts it as walls"]
 
 
 def test_a_step_that_nobody_set_is_none() -> None:

@@ -134,7 +134,7 @@ def test_glass_of_hours(renderer, tmp_path):
     np.testing.assert_allclose(found["open"].hours[seen], 8.0, atol=1e-3)
     sums = [float(found[glass].hours.sum()) for glass in ("open", "tinted", "closed")]
     assert sums[0] > sums[1] + 1.0 > sums[2] + 2.0
-    assert any("glass=closed counts them as walls" in note for note in found["open"].notes)
+    assert any("glass=closed counts it as walls" in note for note in found["open"].notes)
     assert any("(glass=tinted)" in note for note in found["tinted"].notes)
     assert found["open"].table_notes == []
     with pytest.raises(lightmesh.SettingError, match="sun"):

@@ -322,6 +322,8 @@ def of_sun_hours(hours: SunHours, path: Path, file: IO[bytes]) -> None:
     assert_type(hours.hours, Floats)
     assert_type(hours.mask, NDArray[np.bool_])
     assert_type(hours.table, str)
+    assert_type(hours.notes, list[str])
+    assert_type(hours.table_notes, list[str])
     hours.save(path)
     hours.save(file, format="csv")
 
@@ -406,6 +408,7 @@ def image_settings(light: Light, camera: Camera, environment: Environment, path:
 def film_settings() -> FilmSettings:
     settings: FilmSettings = {
         "turntable": 3,
+        "glass": "open",
         "sun": None,
         "frames": "1-3",
         "fps": 24.0,

@@ -15,10 +15,17 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The same as progress of a whole that was started `seconds` before, of which this is the part between two shares.
-    pub fn of_whole(self, [before, after]: [f64; 2], seconds: f64) -> Progress {
-        // The other parts take as long in proportion.
-        let left = self.left.map(|left| ((seconds + left) / after.max(f64::MIN_POSITIVE) - seconds).max(left));
+    /// The same as progress of a whole that was started `seconds` before, of which this is the part between two shares, begun after `spent` seconds.
+    pub fn of_whole(self, [before, after]: [f64; 2], spent: f64, seconds: f64) -> Progress {
+        // By what was done before, and by this part, which counts as much as is done of it.
+        let (known, own) = (before / (after - before).max(f64::MIN_POSITIVE), self.done.max(1e-3));
+        let left = self.left.map(|left| {
+            let by_this = (seconds + left) / after.max(f64::MIN_POSITIVE);
+            let by_others = if before > 0.0 { spent / before } else { by_this };
+            ((known * by_others + own * by_this) / (known + own) - seconds).max(0.0)
+        });
+        // Of the last part, nothing is left at its end.
+        let left = if after >= 1.0 && self.done >= 1.0 { self.left } else { left };
         Progress { done: before * (1.0 - self.done) + after * self.done, seconds, left }
     }
 }

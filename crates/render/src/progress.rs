@@ -23,7 +23,7 @@ use crate::stage::Stage;
 /// Minimum time between two progress reports on the whole image, seconds.
 const INTERVAL: f64 = 0.05;
 /// The share of a stage that must be done before its time says something.
-const TELLING: f64 = 0.02;
+const TELLING: f64 = 0.005;
 
 /// Microseconds for which [`cost`] is trusted as much as what is measured.
 const TRUSTED: f64 = 2e5;

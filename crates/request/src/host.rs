@@ -134,7 +134,8 @@ impl Observer for Part<'_> {
     }
 
     fn progress(&self, progress: Progress) {
-        self.host.progress(progress.of_whole(self.shares, self.spent + self.start.elapsed().as_secs_f64()));
+        let seconds = self.spent + self.start.elapsed().as_secs_f64();
+        self.host.progress(progress.of_whole(self.shares, self.spent, seconds));
     }
 
     fn end(&self, stage: Stage) {

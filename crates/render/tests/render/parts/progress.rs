@@ -74,3 +74,17 @@ fn a_share_that_was_told_stays_when_more_is_found_to_do() {
     run(&work, &log, Stage::Shade, 19.0, 1);
     assert_eq!(log.last().done, 1.0);
 }
+
+#[test]
+fn a_part_is_told_as_a_part_of_the_whole() {
+    // The third of four frames that take ten seconds each; its own estimate is wrong.
+    let third = |done, left| {
+        Progress { done, seconds: 10.0 * done, left: Some(left) }.of_whole([0.5, 0.75], 20.0, 20.0 + 10.0 * done)
+    };
+    let begun = third(0.0, 300.0);
+    assert!(begun.done == 0.5 && (begun.left.unwrap() - 20.0).abs() < 1.0, "{begun:?}");
+    let half = third(0.5, 5.0);
+    assert_eq!((half.done, half.left), (0.625, Some(15.0)));
+    let last = Progress { done: 1.0, seconds: 9.0, left: Some(0.0) }.of_whole([0.75, 1.0], 30.0, 39.0);
+    assert_eq!((last.done, last.left), (1.0, Some(0.0)));
+}
