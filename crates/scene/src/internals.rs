@@ -167,7 +167,7 @@ pub mod texture {
 }
 
 pub mod sanitize {
-    pub use crate::build::sanitize::{clamp_reflectance, drop_invalid_positions, keep_finite, unseen};
+    pub use crate::build::sanitize::{clamp_reflectance, drop_invalid_positions, keep_finite, too_long, unseen};
 }
 
 pub mod vertices {

@@ -11,7 +11,7 @@ use super::{
     geometry_check::{GeometryError, check_affine, check_room},
     loaded_mesh::LoadedMesh,
     mesh_part::{MeshPart, Room},
-    sanitize::{clamp_reflectance, keep_finite, unseen},
+    sanitize::{clamp_reflectance, keep_finite, too_long, unseen},
     vertices::{Vertices, reserve},
 };
 use crate::model::instances::MAX_INSTANCED;
@@ -348,7 +348,8 @@ impl SceneBuilder {
         }
         let changed = [keep_finite(&mut materials), clamp_reflectance(&mut materials)];
         let (origin, mesh) = self.finish();
-        let warnings = changed.into_iter().chain([unseen(&materials, &mesh.materials)]).flatten().collect();
+        let noticed = [unseen(&materials, &mesh.materials), too_long(&mesh)];
+        let warnings = changed.into_iter().chain(noticed).flatten().collect();
         Scene { warnings, ..Scene::new(name, Geometry { origin, mesh, materials, ..Geometry::default() }) }
     }
 }

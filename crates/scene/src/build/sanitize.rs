@@ -5,7 +5,10 @@ use glam::{DVec3, Vec3};
 
 use super::quote::list;
 use crate::model::transforms::is_place;
-use crate::{Dielectric, Facets, Material, NormalMap, Opacity, OpacityMode};
+use crate::{Dielectric, Facets, Material, Mesh, NormalMap, Opacity, OpacityMode};
+
+/// The square of the area that two such edges span is nearly the largest number of single precision.
+const LONGEST_EDGE: f32 = 4e9;
 
 /// Removes the cameras or lights at unusable positions.
 pub fn drop_invalid_positions<T>(items: &mut Vec<(T, DVec3)>, kind: &str) -> Option<String> {
@@ -83,6 +86,23 @@ pub fn unseen(materials: &[Material], of_triangles: &[u32]) -> Option<String> {
     let of = if names.len() == 1 { "material is" } else { "materials are" };
     let listed = list(names.iter().map(String::as_str));
     (!names.is_empty()).then(|| format!("{} {of} not seen, for lack of opacity: {listed}", names.len()))
+}
+
+/// Says how many triangles have edges whose products exceed the largest number: they have no normals, and cast no shadows.
+pub fn too_long(mesh: &Mesh) -> Option<String> {
+    let is_far = |position: &Vec3| position.abs().max_element() > 0.25 * LONGEST_EDGE;
+    if !mesh.positions.iter().any(is_far) {
+        return None;
+    }
+    let is_too_long = |triangle: &&[u32; 3]| {
+        let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize]);
+        [a.distance(b), b.distance(c), c.distance(a)].into_iter().any(|edge| edge > LONGEST_EDGE)
+    };
+    let count = mesh.triangles.iter().filter(is_too_long).count();
+    let have = if count == 1 { "triangle has" } else { "triangles have" };
+    (count > 0).then(|| {
+        format!("{count} {have} edges longer than {LONGEST_EDGE:e} units, which are dark and cast no shadows; use a larger unit of length")
+    })
 }
 
 /// Lowers specular coefficients above 1: between such mirrors light would grow beyond every number.

@@ -2,7 +2,7 @@
 
 use super::Draft;
 use crate::build::quote::quote;
-use crate::build::sanitize::{clamp_reflectance, drop_invalid_positions, keep_finite, unseen};
+use crate::build::sanitize::{clamp_reflectance, drop_invalid_positions, keep_finite, too_long, unseen};
 use crate::build::textures::missing_uvs::untextured;
 use crate::optics::lamps::lamps;
 use crate::{Camera, Geometry, Lights, LoadError, Scene};
@@ -40,8 +40,9 @@ impl Draft {
         let own = self.builder.triangle_count();
         self.without_uvs.extend(self.shapes_without_uvs.iter().map(|shape| own + shape.start..own + shape.end));
         let (origin, mut mesh) = self.builder.finish();
-        let nowhere = unseen(&self.materials, &mesh.materials);
-        self.warnings.extend(nowhere.map(|warning| format!("{}: {warning}", self.path.display())));
+        for warning in [unseen(&self.materials, &mesh.materials), too_long(&mesh)].into_iter().flatten() {
+            self.warnings.push(format!("{}: {warning}", self.path.display()));
+        }
         self.warnings.extend(untextured(&mut mesh, &mut self.materials, &self.without_uvs));
         let warnings = self.warnings.into_list();
         if self.strict && !warnings.is_empty() {

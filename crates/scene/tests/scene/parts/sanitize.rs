@@ -1,6 +1,6 @@
 use glam::{DVec3, Vec3};
-use lightmesh_scene::internals::sanitize::{clamp_reflectance, drop_invalid_positions, keep_finite, unseen};
-use lightmesh_scene::{Dielectric, Material, Opacity};
+use lightmesh_scene::internals::sanitize::{clamp_reflectance, drop_invalid_positions, keep_finite, too_long, unseen};
+use lightmesh_scene::{Dielectric, Material, Mesh, Opacity};
 
 #[test]
 fn what_has_no_place_is_left_out_and_counted() {
@@ -56,4 +56,18 @@ fn coefficients_without_a_value_count_as_0() {
     assert_eq!((materials[1].kd, materials[1].ks), (Vec3::new(0.0, 0.5, 0.0), Vec3::ZERO));
     assert!(warning.is_some_and(|warning| warning.starts_with("1 materials have infinite")));
     assert_eq!((keep_finite(&mut materials), &materials[0]), (None, &Material::default()));
+}
+
+#[test]
+fn edges_whose_products_are_no_numbers_are_told() {
+    let mesh = |size: f32| Mesh {
+        positions: vec![Vec3::ZERO, Vec3::new(size, 0.0, 0.0), Vec3::new(0.0, 0.5 * size, 0.0)],
+        triangles: vec![[0, 1, 2]],
+        ..Mesh::default()
+    };
+    for size in [1.0, 3.5e9] {
+        assert_eq!(too_long(&mesh(size)), None, "{size}");
+    }
+    let warning = too_long(&mesh(5e9)).unwrap();
+    assert!(warning.starts_with("1 triangle has edges longer than 4e9 units"), "{warning}");
 }
