@@ -10,7 +10,7 @@ use std::path::Path;
 
 use lightmesh::request::files::json;
 pub(crate) use lightmesh::request::files::{OutputError, Outputs, publish, ready};
-use lightmesh_files::{closed_output, is_output_closed, visible, visible_json, visible_lines};
+use lightmesh_files::{check_output, visible, visible_json, visible_lines};
 use serde::Serialize;
 
 use crate::color;
@@ -34,9 +34,7 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<(), OutputError> {
 
 /// A closed pipe is not an error.
 fn write_stdout(text: &str) -> Result<(), OutputError> {
-    if is_output_closed() {
-        return Err(OutputError::Stdout(closed_output()));
-    }
+    check_output().map_err(OutputError::Stdout)?;
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(OutputError::Stdout(error)),

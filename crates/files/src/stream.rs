@@ -36,8 +36,7 @@ impl Stream {
     /// Opens it for writing. For a pipe this waits until there is a reader.
     pub(crate) fn open(&self) -> io::Result<Box<dyn Write>> {
         Ok(match self {
-            Stream::Stdout if is_output_closed() => return Err(closed_output()),
-            Stream::Stdout => Box::new(io::stdout().lock()),
+            Stream::Stdout => check_output().map(|()| Box::new(io::stdout().lock()))?,
             Stream::Stderr => Box::new(io::stderr().lock()),
             Stream::Named(path) => {
                 // Another open file of this process may have content, to which shells may append.
@@ -57,14 +56,12 @@ pub fn look_at_output() {
     }
 }
 
-/// Whether standard output was closed when [`look_at_output`] was called.
-pub fn is_output_closed() -> bool {
-    CLOSED.load(Ordering::Relaxed)
-}
-
-/// The error of writing to closed standard output.
-pub fn closed_output() -> io::Error {
-    io::Error::other("it is closed")
+/// Fails if standard output was closed when [`look_at_output`] was called.
+///
+/// # Errors
+/// That it is closed.
+pub fn check_output() -> io::Result<()> {
+    if CLOSED.load(Ordering::Relaxed) { Err(io::Error::other("it is closed")) } else { Ok(()) }
 }
 
 /// Whether what is written to `path` goes where standard output goes.

@@ -337,7 +337,12 @@ impl<B: Backend> Passes<'_, B> {
     }
 
     /// Renders what samples that are not shaded themselves show in mirrors. `guess` is the work that is expected of them.
-    fn mirrors(&self, (rays, hits): (B::Rays, B::Hits), guess: Pieces, film: &mut B::Film) -> Result<(), RenderError> {
+    fn mirrors(
+        &self,
+        (rays, hits): (B::Rays, B::Hits),
+        mut guess: Pieces,
+        film: &mut B::Film,
+    ) -> Result<(), RenderError> {
         let runner = &self.runner;
         let n = runner.backend.ray_count(&rays);
         if n == 0 {
@@ -346,7 +351,6 @@ impl<B: Backend> Passes<'_, B> {
         let wave = self.wave(&rays, &hits, 1);
         let mirrored = runner.stage(Stage::MirrorRays, [n; 2], |backend| backend.mirror_rays(&wave))?;
         drop((rays, hits));
-        let mut guess = guess;
         guess -= Pieces::of(Stage::MirrorRays, n as f64);
         self.waves((mirrored, None), Depths::MIRRORED, PARTS_OF_MERGED, guess, film)
     }

@@ -196,7 +196,7 @@ impl Session {
     /// [`Error`]; [`RequestError::Missing`] if no sun study is asked for.
     pub fn sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<SunHours, Error> {
         let study = self.plan().sun.as_ref().ok_or(RequestError::Missing { setting: "sun" })?;
-        SunHours::of_study(study, &self.prepared.scene, self.context(renderer, host))
+        SunHours::of_study(study, &self.prepared.scene, true, self.context(renderer, host))
     }
 }
 

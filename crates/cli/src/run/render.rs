@@ -56,10 +56,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 /// Renders the frames of a film, after the hours of direct sun if these are asked for, too.
 fn film(session: &Session, range: FrameRange, renderer: &Renderer, watcher: &Watcher) -> Result<(), Failure> {
     let start = Instant::now();
-    let mut hours = 0.0;
-    if session.plan().sun.as_ref().is_some_and(|study| !study.outputs.is_empty()) {
-        hours = HOURS;
-    }
+    let has_hours = session.plan().sun.as_ref().is_some_and(|study| !study.outputs.is_empty());
+    let hours = if has_hours { HOURS } else { 0.0 };
     if let Some(done) = session.write_sun_hours(renderer, &Part::new(watcher, [0.0, hours], 0.0))? {
         watcher.note(&done);
     }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
-use lightmesh_files::{Output, Ready, TargetError, closed_output, identity, is_output_closed, is_standard_output};
+use lightmesh_files::{Output, Ready, TargetError, check_output, identity, is_standard_output};
 
 use crate::error::OutputError;
 use crate::words::Name;
@@ -49,8 +49,8 @@ impl Destination {
 
     /// Checks that bytes do not go to a terminal, where nobody can read them, nor nowhere. `output` is what sends them.
     pub fn check_binary(&self, output: Name) -> Result<(), OutputError> {
-        if self.is_stdout() && is_output_closed() {
-            return Err(OutputError::Stdout(closed_output()));
+        if self.is_stdout() {
+            check_output().map_err(OutputError::Stdout)?;
         }
         if self.is_stdout() && io::stdout().is_terminal() { Err(OutputError::Terminal { output }) } else { Ok(()) }
     }

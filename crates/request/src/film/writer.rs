@@ -264,6 +264,8 @@ impl FrameWriter {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
 
     #[test]
@@ -274,7 +276,11 @@ mod tests {
         for _ in 0..2 {
             queue.send(pending.add()).unwrap();
         }
-        let writer = thread::spawn(move || drop(waiting.recv()));
+        // Long enough for this thread to wait for both.
+        let writer = thread::spawn(move || {
+            thread::sleep(Duration::from_millis(200));
+            drop(waiting.recv());
+        });
         assert!(pending.wait(), "one is written, and the other one is dropped with the queue");
         assert_eq!(*pending.count(), 0);
         writer.join().unwrap();

@@ -13,6 +13,7 @@ use super::found::SunHours;
 use super::pixel_area::PixelGrid;
 use super::points::{Finer, Point};
 use super::suns::{BYTES_AT_ONCE, MAX_AT_ONCE};
+use crate::host::{Host, Quiet};
 
 /// Rows that rest on fewer points are made better.
 pub(super) const ENOUGH: u64 = 16;
@@ -30,9 +31,10 @@ impl Finer {
         renderer: &Renderer,
         prepared: &PreparedScene,
         (settings, suns): (&Settings, &[(Light, f64)]),
-        observer: &dyn Observer,
+        host: &dyn Host,
     ) -> Result<Finer, RenderError> {
-        let observer = &Silent(observer);
+        // Whoever watches the image is told of it alone, and can end this, too.
+        let observer = &Quiet(host);
         let mut finer = Finer::default();
         let whole = found.frame.window().whole;
         let pixels = u64::from(whole[0]) * u64::from(whole[1]);
@@ -131,13 +133,4 @@ fn few(found: &SunHours) -> (BTreeSet<u32>, Vec<Crop>) {
         Crop::new([window.first[0] + x as i32, window.first[1] + y as i32], [TILE.min(width - x), TILE.min(height - y)])
     };
     (pixels.into_keys().collect(), tiles.into_iter().map(crop).collect())
-}
-
-/// Whoever watches the image is told of it alone, and can end this, too.
-struct Silent<'a>(&'a dyn Observer);
-
-impl Observer for Silent<'_> {
-    fn cancelled(&self) -> bool {
-        self.0.cancelled()
-    }
 }

@@ -51,13 +51,14 @@ const NAMED: usize = 4;
 pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context) -> Result<String, Error> {
     let Context { renderer, host, .. } = context;
     let start = Instant::now();
-    let found = SunHours::of_study(study, prepared, context)?;
+    let has_table = study.outputs.iter().any(HoursFile::is_table);
+    let found = SunHours::of_study(study, prepared, has_table, context)?;
     let seconds = start.elapsed().as_secs_f64();
     let files = host.during("writing the hours of direct sun", || {
         renderer.install(|| study.outputs.iter().map(|output| found.file(output)).collect::<Result<_, _>>())
     })?;
     publish(files)?;
-    if study.outputs.iter().any(HoursFile::is_table) {
+    if has_table {
         found.table_notes(host.words()).iter().for_each(|text| host.warning(text));
     }
     let names: Vec<String> = study.outputs.iter().map(|output| output.path.display().to_string()).collect();
@@ -65,8 +66,13 @@ pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context
 }
 
 impl SunHours {
-    /// The hours of the moments of a study, for what an image as planned shows.
-    pub(crate) fn of_study(study: &SunStudy, prepared: &PreparedScene, context: Context) -> Result<SunHours, Error> {
+    /// The hours of the moments of a study, for what an image as planned shows; `has_table` if they may be asked for by object.
+    pub(crate) fn of_study(
+        study: &SunStudy,
+        prepared: &PreparedScene,
+        has_table: bool,
+        context: Context,
+    ) -> Result<SunHours, Error> {
         let Context { renderer, plan, host, .. } = context;
         let up = plan.staging.up_of(&prepared.scene.lights);
         let suns = suns(study, up, prepared.geometry.bounds).expect("the sun has a direction");
@@ -74,7 +80,7 @@ impl SunHours {
             host.note(&note);
         }
         let found = host.during(RENDERING, || {
-            host.cancellable(|| SunHours::of(renderer, prepared, (&plan.settings, study), &suns, host))
+            host.cancellable(|| SunHours::of(renderer, prepared, (&plan.settings, study, has_table), &suns, host))
         })?;
         Ok(SunHours { exr: plan.files.options.exr, ..found })
     }
@@ -83,7 +89,7 @@ impl SunHours {
     fn of(
         renderer: &Renderer,
         prepared: &PreparedScene,
-        (settings, study): (&Settings, &SunStudy),
+        (settings, study, has_table): (&Settings, &SunStudy, bool),
         suns: &[(Light, f64)],
         host: &dyn Host,
     ) -> Result<SunHours, RenderError> {
@@ -120,8 +126,8 @@ impl SunHours {
         let hours = hours.into_iter().map(|hours| hours as f32).collect();
         let study = study.clone();
         let found = SunHours { study, exr: ExrOptions::default(), frame, camera, hours, mask, finer: Finer::default() };
-        let finer = Finer::of(&found, renderer, prepared, (&settings, suns), host)?;
-        Ok(SunHours { finer, ..found })
+        let finer = has_table.then(|| Finer::of(&found, renderer, prepared, (&settings, suns), host)).transpose()?;
+        Ok(SunHours { finer: finer.unwrap_or_default(), ..found })
     }
 
     /// The hours as a picture with a legend.

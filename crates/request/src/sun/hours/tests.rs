@@ -33,7 +33,7 @@ fn hours_of_size(scene: &str, study: &SunStudy, size: [u32; 2]) -> SunHours {
     let settings = Settings::default().with_size(size);
     let prepared = renderer.prepare(&scene, &settings, &Unobserved).unwrap();
     let suns = suns(study, Up::Y, prepared.geometry.bounds).unwrap();
-    SunHours::of(&renderer, &prepared, (&settings, study), &suns, &Unobserved).unwrap()
+    SunHours::of(&renderer, &prepared, (&settings, study, true), &suns, &Unobserved).unwrap()
 }
 
 /// Whether a ray from a point meets the box.
