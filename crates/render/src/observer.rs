@@ -15,18 +15,19 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The same as progress of a whole that was started `seconds` before, of which this is the part between two shares, begun after `spent` seconds.
-    pub fn of_whole(self, [before, after]: [f64; 2], spent: f64, seconds: f64) -> Progress {
-        // By what was done before, and by this part, which counts as much as is done of it.
-        let (known, own) = (before / (after - before).max(f64::MIN_POSITIVE), self.done.max(1e-3));
+    /// The same as progress of a whole that was started `seconds` before, of which this is the part between two shares. The parts before it say that
+    /// the whole takes `others` seconds, if there are any.
+    pub fn of_whole(self, [before, after]: [f64; 2], others: Option<f64>, seconds: f64) -> Progress {
+        let part = (after - before).max(f64::MIN_POSITIVE);
         let left = self.left.map(|left| {
-            let by_this = (seconds + left) / after.max(f64::MIN_POSITIVE);
-            let by_others = if before > 0.0 { spent / before } else { by_this };
-            ((known * by_others + own * by_this) / (known + own) - seconds).max(0.0)
+            let own = (self.seconds + left) / part;
+            let others = others.unwrap_or(own);
+            // By the others, and the more by this part the more of it is done, which counts as much as one of them.
+            let (known, done) = (before / part, self.done.max(1e-3));
+            let left = done * left + (1.0 - done) * (others * part - self.seconds).max(0.0);
+            left + (1.0 - after) * (known * others + done * own) / (known + done)
         });
-        // Of the last part, nothing is left at its end.
-        let left = if after >= 1.0 && self.done >= 1.0 { self.left } else { left };
-        Progress { done: before * (1.0 - self.done) + after * self.done, seconds, left }
+        Progress { done: before + part * self.done, seconds, left }
     }
 }
 

@@ -32,9 +32,11 @@ const PARTS_OF_MERGED: u32 = 2;
 /// Shared fragments by pixel, before they are counted.
 const GUESSED_FRAGMENTS: f64 = 0.5;
 /// Which share of the samples of pixels turns out to differ so much between pixels that they are shaded one by one, more or less.
-const GUESSED_SPLIT: f64 = 0.05;
+const GUESSED_SPLIT: f64 = 0.01;
 /// How many of the rays that meet a surface a mirror sends on, before they are counted.
 const GUESSED_MIRRORED: f64 = 0.25;
+/// How many of the rays that mirrors send on are left when those of a pixel that meet one surface are merged.
+const GUESSED_MERGED: f64 = 0.6;
 
 /// Visibility at given points, to be computed.
 pub(crate) struct Baking<'a, B: Backend> {
@@ -396,10 +398,10 @@ impl<B: Backend> Passes<'_, B> {
     /// A guess of the work on so many shared fragments, single samples and mirror samples; single samples are `new` if nothing was gathered before for
     /// their pixels.
     fn guess_fragments(&self, [shared, single, mirror]: [f64; 3], new: bool) -> [Pieces; 3] {
-        // Glass sends on two rays.
-        let mirrored = if self.plan.is_transmissive { 2.0 * mirror } else { mirror };
+        // Rough mirrors send on several, glass two of each.
+        let mirrored = mirror * f64::from(self.plan.directions * if self.plan.is_transmissive { 2 } else { 1 });
         let goes_on = self.goes_on(Depths::MIRRORED, Depths::MIRRORED.first);
-        let mirrors = self.pieces_of_wave(mirrored, false, goes_on).and(Stage::PrimaryRays, mirrored);
+        let mirrors = self.pieces_of_wave(GUESSED_MERGED * mirrored, false, goes_on).and(Stage::PrimaryRays, mirrored);
         [
             self.pieces_of_wave(shared, false, false),
             self.pieces_of_wave(single, new, self.goes_on(Depths::ALL, 0)),

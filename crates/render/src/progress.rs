@@ -8,8 +8,10 @@
 //! left = Σ_s (expected_s − done_s) · seconds_s / done_s
 //! ```
 //!
-//! A stage that has not run yet takes as long as [`cost`] says, by the measure of those that have. The share that is done rises from one report to the
-//! next by the time between them, as a part of this time and what is left: so it never falls, and estimates that were wrong do little harm.
+//! A stage that has not run yet takes as long as [`cost`] says, by the measure of those that have: a guess, and while that is most of what is left, little
+//! is told to be done; then as much as is known. What a stage did once, for all that it does later, is not counted again. The share that is done rises
+//! from one report to the next by the time between them, as a part of this time and what is left: so it never falls, and estimates that were wrong do
+//! little harm.
 
 use std::iter::Sum;
 use std::ops::{AddAssign, SubAssign};
@@ -23,7 +25,10 @@ use crate::stage::Stage;
 /// Minimum time between two progress reports on the whole image, seconds.
 const INTERVAL: f64 = 0.05;
 /// The share of a stage that must be done before its time says something.
-const TELLING: f64 = 0.005;
+const TELLING: f64 = 0.02;
+
+/// The share that is told at most while more than half of what is left is a guess.
+const GUESSED: f64 = 0.29;
 
 /// Microseconds for which [`cost`] is trusted as much as what is measured.
 const TRUSTED: f64 = 2e5;
@@ -32,11 +37,11 @@ const TRUSTED: f64 = 2e5;
 fn cost(stage: Stage) -> f64 {
     match stage {
         Stage::Gather => 500.0,
-        Stage::AreaShadows | Stage::ShadowRays => 15.0,
-        Stage::AdaptiveShadows | Stage::ShortTests | Stage::LongTests | Stage::Transmittance => 3.0,
-        Stage::OccluderLists | Stage::Collect | Stage::Interpolate => 1.0,
+        Stage::AreaShadows | Stage::ShadowRays => 10.0,
+        Stage::AdaptiveShadows | Stage::Transmittance => 2.0,
+        Stage::OccluderLists | Stage::ShortTests => 0.4,
         Stage::CameraRays => 0.06,
-        _ => 0.25,
+        _ => 0.15,
     }
 }
 
@@ -101,12 +106,16 @@ struct State {
     counted: Counted,
     /// By stage, the seconds that what is done took.
     seconds: Pieces,
+    /// How many of them were taken once, for all that is done later, too.
+    once: Pieces,
     /// The stage in progress.
     current: Option<Current>,
     /// The share of the image that was done before the part in progress, and is after it.
     part: [f64; 2],
     /// The share that was told, and when: seconds after the start.
     told: (f64, f64),
+    /// Whether most of what was left then was a guess.
+    guesses: bool,
 }
 
 /// Work that is expected, and done.
@@ -124,6 +133,8 @@ struct Current {
     /// Its own pieces.
     total: u64,
     done: u64,
+    /// The share of its time that has passed, where that is not the share of pieces.
+    share: Option<f64>,
     /// Seconds after its start when the latest of them was done.
     when: f64,
     /// Pieces of the image that it counts as.
@@ -142,9 +153,11 @@ impl Work {
         let state = State {
             counted: Counted::default(),
             seconds: Pieces::default(),
+            once: Pieces::default(),
             current: None,
             part: [0.0, 1.0],
             told: (0.0, 0.0),
+            guesses: false,
         };
         Work { start: Instant::now(), state: Mutex::new(state), reported: AtomicU64::new(0), telling: Mutex::new(()) }
     }
@@ -187,7 +200,8 @@ impl Work {
 
     /// A stage begins that has `total` pieces of its own and counts as `pieces` pieces of the image.
     pub fn begin(&self, observer: &dyn Observer, stage: Stage, total: u64, pieces: f64) {
-        self.state().current = Some(Current { stage, start: Instant::now(), total, done: 0, when: 0.0, pieces });
+        self.state().current =
+            Some(Current { stage, start: Instant::now(), total, done: 0, share: None, when: 0.0, pieces });
         observer.begin(stage, total);
     }
 
@@ -195,11 +209,29 @@ impl Work {
     pub(crate) fn advance(&self, observer: &dyn Observer, pieces: u64) {
         if let Some(current) = &mut self.state().current {
             current.done += pieces;
-            current.when = current.start.elapsed().as_secs_f64();
+            if pieces > 0 {
+                current.when = current.start.elapsed().as_secs_f64();
+            }
             debug_assert!(current.done <= current.total, "{:?}: {} of {}", current.stage, current.done, current.total);
         }
         observer.advance(pieces);
         self.report(observer, false);
+    }
+
+    /// Some pieces of the current stage are done, and this share of its time has passed. Unlike pieces, it may fall.
+    pub(crate) fn advance_in_time(&self, observer: &dyn Observer, pieces: u64, share: f64) {
+        if let Some(current) = &mut self.state().current {
+            (current.share, current.when) = (Some(share), current.start.elapsed().as_secs_f64());
+        }
+        self.advance(observer, pieces);
+    }
+
+    /// The current stage has taken so many seconds for what all that is done later shares.
+    pub(crate) fn took_once(&self, seconds: f64) {
+        let mut state = self.state();
+        if let Some(current) = state.current {
+            state.once += Pieces::of(current.stage, seconds);
+        }
     }
 
     /// The stage has ended. Pieces that it did not report are done as well.
@@ -237,11 +269,17 @@ impl Work {
         self.reported.store(now, Ordering::Relaxed);
         let seconds = self.start.elapsed().as_secs_f64();
         let mut state = self.state();
-        let Some(left) = state.left(seconds) else { return };
+        let Some([left, guessed]) = state.left(seconds) else { return };
         let (told, when) = state.told;
         let passed = (seconds - when).max(f64::MIN_POSITIVE);
-        let done = told + (1.0 - told) * passed / (passed + left);
-        state.told = (done, seconds);
+        let risen = told + (1.0 - told) * passed / (passed + left);
+        let (did_guess, guesses) = (state.guesses, guessed > 0.5 * left);
+        let done = match (did_guess, guesses) {
+            (_, true) => risen.min(GUESSED.max(told)),
+            (true, false) => told.max(seconds / (seconds + left)),
+            (false, false) => risen,
+        };
+        (state.told, state.guesses) = ((done, seconds), guesses);
         drop(state);
         observer.progress(Progress { done, seconds, left: Some(left) });
     }
@@ -252,50 +290,59 @@ impl Work {
 }
 
 impl State {
-    /// About how many seconds the rest takes, `seconds` after the start; `None` before anything is known.
-    fn left(&self, seconds: f64) -> Option<f64> {
+    /// About how many seconds the rest takes, `seconds` after the start, and how many of them are a guess; `None` before anything is known.
+    fn left(&self, seconds: f64) -> Option<[f64; 2]> {
         let Counted { expected, done } = &self.counted;
         if *expected == Pieces::default() {
             return None;
         }
-        // How fast this machine is.
-        let (mut spent, mut costs) = (0.0, 0.0);
-        for &stage in Stage::ALL.iter().filter(|&&stage| done.stage(stage) > 0.0) {
-            spent += self.seconds.stage(stage);
-            costs += cost(stage) * done.stage(stage);
-        }
-        let speed = 1e-6 * (1e6 * spent + TRUSTED) / (costs + TRUSTED);
-        let mut left = 0.0;
+        let speed = self.speed();
+        let (mut left, mut guessed) = (0.0, 0.0);
         for &stage in &Stage::ALL {
-            let mut rate = match done.stage(stage) {
-                0.0 => speed * cost(stage),
-                pieces => self.seconds.stage(stage) / pieces,
-            };
-            let mut pieces = expected.stage(stage) - done.stage(stage);
+            let is_measured = done.stage(stage) > 0.0;
+            let mut rate =
+                if is_measured { self.repeated(stage, 0.0) / done.stage(stage) } else { speed * cost(stage) };
+            let (mut pieces, mut is_guess, mut own) = (expected.stage(stage) - done.stage(stage), !is_measured, 0.0);
             if let Some(current) = self.current.filter(|current| current.stage == stage) {
                 pieces -= current.pieces;
                 let (elapsed, share) = (current.start.elapsed().as_secs_f64(), current.share());
                 if share >= TELLING {
                     let whole = current.when / share;
-                    rate = (self.seconds.stage(stage) + whole) / (done.stage(stage) + current.pieces).max(1.0);
-                    left += (whole - elapsed).max(0.25 * (elapsed - current.when));
+                    rate = self.repeated(stage, whole) / (done.stage(stage) + current.pieces).max(1.0);
+                    own = (whole - elapsed).max(0.25 * (elapsed - current.when));
+                    is_guess = false;
                 } else if current.pieces > 0.0 {
-                    // It has taken longer than it was thought to in all: then for as long again.
-                    left += (rate * current.pieces - elapsed).max(elapsed);
+                    // It has taken longer than it was thought to in all: then for half as long again.
+                    own = (rate * current.pieces - elapsed).max(0.5 * elapsed);
                 }
             }
-            if pieces > 0.0 {
-                left += rate * pieces;
-            }
+            let stage_left = own + rate * pieces.max(0.0);
+            left += stage_left;
+            guessed += if is_guess { stage_left } else { 0.0 };
         }
         let [_, after] = self.part;
-        left.is_finite().then(|| (seconds + left) / after - seconds)
+        left.is_finite().then(|| [(seconds + left) / after - seconds, guessed])
+    }
+
+    /// The seconds that a stage took, and `more`, but for what it did once.
+    fn repeated(&self, stage: Stage, more: f64) -> f64 {
+        (self.seconds.stage(stage) + more - self.once.stage(stage)).max(0.0)
+    }
+
+    /// Seconds in which this machine does what [`cost`] calls a microsecond. What gathers light says nothing of others.
+    fn speed(&self) -> f64 {
+        let (mut spent, mut costs) = (0.0, 0.0);
+        for &stage in Stage::ALL.iter().filter(|&&stage| stage != Stage::Gather) {
+            spent += self.seconds.stage(stage);
+            costs += cost(stage) * self.counted.done.stage(stage);
+        }
+        1e-6 * (1e6 * spent + TRUSTED) / (costs + TRUSTED)
     }
 }
 
 impl Current {
     /// The share that is done.
     fn share(&self) -> f64 {
-        self.done as f64 / self.total.max(1) as f64
+        self.share.unwrap_or(self.done as f64 / self.total.max(1) as f64)
     }
 }

@@ -118,6 +118,11 @@ impl<'a> RenderContext<'a> {
         self.work.advance(self.observer, pieces);
     }
 
+    /// Reports this, and that a share of the stage's time has passed.
+    pub(crate) fn advance_in_time(&self, pieces: u64, share: f64) {
+        self.work.advance_in_time(self.observer, pieces, share);
+    }
+
     /// Adds the wall time of `work` to `stage`.
     pub(crate) fn wall_time<T>(&self, stage: Stage, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();

@@ -11,7 +11,7 @@ use lightmesh_image as image;
 use lightmesh_render::{Frame, PreparedScene, RenderError, Settings};
 use lightmesh_scene::{Falloff, Scene};
 
-use crate::host::{Host, Part};
+use crate::host::{Host, Parts};
 use crate::stage::Staged;
 use crate::value::Exposure;
 
@@ -118,11 +118,11 @@ impl Metering {
         // What lies around the image is not in it.
         let around = crop.filter(|crop| !crop.is_within(settings.size));
         settings.transparent |= self.is_apart();
-        let start = Instant::now();
         let is_reflected = self.is_reflected(&prepared.scene, &settings);
         let times = if is_reflected || around.is_some() { 2 } else { 1 };
-        let again = || Part::nth(host, 1, times, start.elapsed().as_secs_f64());
-        let mut frame = render(prepared, &settings, &Part::nth(host, 0, times, 0.0))?;
+        let (mut parts, start) = (Parts::new(times), Instant::now());
+        let mut frame = render(prepared, &settings, &parts.next(host))?;
+        parts.took(start.elapsed().as_secs_f64());
         let stops = self.stops(&frame, host);
         settings.crop = settings.crop.or(around);
         let background = self.background(stops);
@@ -132,10 +132,10 @@ impl Metering {
         {
             settings.transparent = false;
             let lights = prepared.scene.lights.clone().with_background(background);
-            frame = render(&prepared.with_lights(lights), &settings, &again())?;
+            frame = render(&prepared.with_lights(lights), &settings, &parts.next(host))?;
         } else {
             if around.is_some() {
-                frame = render(prepared, &settings, &again())?;
+                frame = render(prepared, &settings, &parts.next(host))?;
             }
             if let Some(background) = background {
                 frame = self.put_behind(frame, background);

@@ -102,25 +102,56 @@ impl dyn Host + '_ {
     }
 }
 
+/// Parts of some work, each of which takes about as long as those before it: frames of a film.
+pub struct Parts {
+    count: usize,
+    /// What each one took that is done, seconds.
+    took: Vec<f64>,
+}
+
+impl Parts {
+    /// None of so many parts is done.
+    pub fn new(count: usize) -> Parts {
+        Parts { count, took: Vec::new() }
+    }
+
+    /// The host of the next one.
+    pub fn next<'a>(&self, host: &'a dyn Host) -> Part<'a> {
+        let share = |index: usize| index as f64 / self.count.max(1) as f64;
+        let done = self.took.len();
+        let (spent, shares) = (self.took.iter().sum(), [share(done), share(done + 1)]);
+        Part { others: self.whole(), ..Part::new(host, shares, spent) }
+    }
+
+    /// It took so many seconds.
+    pub fn took(&mut self, seconds: f64) {
+        self.took.push(seconds);
+    }
+
+    /// What all seem to take: the mean of all so far, and of the latest quarter, since some take longer than others and neighbours as long as each other.
+    fn whole(&self) -> Option<f64> {
+        let mean = |took: &[f64]| took.iter().sum::<f64>() / took.len() as f64;
+        let latest = self.took.len().div_ceil(4);
+        let both = 0.5 * (mean(&self.took) + mean(&self.took[self.took.len() - latest..]));
+        (!self.took.is_empty()).then_some(self.count as f64 * both)
+    }
+}
+
 /// The host of a part of some work, which hears of its progress as that of the whole.
 pub struct Part<'a> {
     host: &'a dyn Host,
     shares: [f64; 2],
     /// Seconds of the whole before the part.
     spent: f64,
+    /// Seconds of the whole, by the parts before it.
+    others: Option<f64>,
     start: Instant,
 }
 
 impl<'a> Part<'a> {
     /// The part of the whole between two shares, after `spent` seconds of it.
     pub fn new(host: &'a dyn Host, shares: [f64; 2], spent: f64) -> Part<'a> {
-        Part { host, shares, spent, start: Instant::now() }
-    }
-
-    /// Number `index` of `count` parts.
-    pub fn nth(host: &'a dyn Host, index: usize, count: usize, spent: f64) -> Part<'a> {
-        let share = |index: usize| index as f64 / count.max(1) as f64;
-        Part::new(host, [share(index), share(index + 1)], spent)
+        Part { host, shares, spent, others: None, start: Instant::now() }
     }
 }
 
@@ -135,7 +166,7 @@ impl Observer for Part<'_> {
 
     fn progress(&self, progress: Progress) {
         let seconds = self.spent + self.start.elapsed().as_secs_f64();
-        self.host.progress(progress.of_whole(self.shares, self.spent, seconds));
+        self.host.progress(progress.of_whole(self.shares, self.others, seconds));
     }
 
     fn end(&self, stage: Stage) {

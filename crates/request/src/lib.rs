@@ -41,7 +41,7 @@ mod words;
 
 pub use error::{Error, ManifestError, MovieChoiceError, MovieError, RequestError, StageError};
 pub use fields::{field, nearest};
-pub use host::{BUILDING, FrameDone, Host, Part, RENDERING};
+pub use host::{BUILDING, FrameDone, Host, Part, Parts, RENDERING};
 pub use image_plan::{ImagePlan, StagedImage, StoragePlan};
 pub use open::{FilmFrames, Picture, film, picture, sun_hours};
 pub use order::{Order, format_of};

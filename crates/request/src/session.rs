@@ -11,7 +11,7 @@ use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::film::{self, FrameRange, FrameRenderer, FrameWriter, RenderedFrame};
-use crate::host::{BUILDING, Host, Part};
+use crate::host::{BUILDING, Host, Parts};
 use crate::mesh_file::Mesh;
 use crate::plan::Plan;
 use crate::save::save;
@@ -184,9 +184,8 @@ impl Session {
             frames,
             writer,
             load: self.load,
-            total: range.numbers.len(),
+            parts: Parts::new(range.numbers.len()),
             left: range.numbers.into_iter(),
-            spent: 0.0,
         })
     }
 
@@ -207,18 +206,15 @@ pub struct Frames {
     /// `None` if frames are not written, or all are.
     writer: Option<FrameWriter>,
     load: f64,
-    /// How many there were in the beginning.
-    total: usize,
+    parts: Parts,
     left: std::vec::IntoIter<u32>,
-    /// The seconds that frames took so far.
-    spent: f64,
 }
 
 impl Frames {
     /// Renders the next frame, and writes it; `None` after the last one. After an error there is none.
     pub fn next(&mut self, renderer: &Renderer, host: &dyn Host) -> Option<Result<RenderedFrame, Error>> {
         let start = Instant::now();
-        let part = Part::nth(host, self.total - self.left.len(), self.total, self.spent);
+        let part = self.parts.next(host);
         let context = Context { renderer, plan: &self.plan, load: self.load, host: &part };
         let Some(number) = self.left.next() else {
             let closed = self.writer.take()?.close();
@@ -229,7 +225,7 @@ impl Frames {
             Some(writer) => writer.next(number, &mut self.frames, context),
             None => self.frames.render(number, context),
         });
-        self.spent += start.elapsed().as_secs_f64();
+        self.parts.took(start.elapsed().as_secs_f64());
         Some(rendered.map_err(|cause| {
             self.left = Vec::new().into_iter();
             match self.writer.take() {

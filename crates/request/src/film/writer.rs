@@ -13,7 +13,7 @@ use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
 use crate::expose::Metering;
 use crate::files::PictureFiles;
-use crate::host::{FrameDone, Part};
+use crate::host::{FrameDone, Parts};
 use crate::manifest::Manifest;
 use crate::plan::Plan;
 use crate::save::save;
@@ -140,9 +140,9 @@ fn render_all(
     context: Context,
     queue: &SyncSender<Finished>,
 ) -> Result<(), InFrame> {
-    let (pending, start) = (Pending::default(), Instant::now());
-    for (index, &number) in range.numbers.iter().enumerate() {
-        let part = Part::nth(context.host, index, range.numbers.len(), start.elapsed().as_secs_f64());
+    let (pending, mut parts) = (Pending::default(), Parts::new(range.numbers.len()));
+    for &number in &range.numbers {
+        let (start, part) = (Instant::now(), parts.next(context.host));
         let context = Context { host: &part, ..context };
         let in_frame = |cause| Box::new((number, cause));
         let files = files_of(context.plan, number).map_err(in_frame)?;
@@ -158,6 +158,7 @@ fn render_all(
         if context.host.cancelled() {
             return Err(in_frame(RenderError::Cancelled.into()));
         }
+        parts.took(start.elapsed().as_secs_f64());
     }
     Ok(())
 }

@@ -14,6 +14,7 @@ use crate::shadow::projected_light::Emitter;
 use crate::shadow::{SEGMENTS, ShadowTarget, hidden, shadow_segment};
 use crate::stages::primary_rays::cpu::{camera_rays, closest_hits};
 use crate::stages::shadow_rays::cpu::{Batch, shadow_rays};
+use crate::steps::spread_out;
 use crate::view::View;
 
 /// Maximum number of rays per task.
@@ -69,7 +70,7 @@ impl<'a> Band<'a> {
 
     /// The shares of a light of which all samples are tested.
     fn all_samples(&self, emitter: &Emitter, shares: &mut [f32]) {
-        shares.par_chunks_mut(RUN).enumerate().for_each(|(run, shares)| {
+        spread_out(shares.chunks_mut(RUN)).for_each(|(run, shares)| {
             let first = run * RUN;
             self.wave.context.piece(2 * shares.len(), || {
                 let mut batch = Batch::new(self.wave);
@@ -93,7 +94,7 @@ impl<'a> Band<'a> {
 
         // 2. and 3. Where neighbours agree, the share is theirs; elsewhere all samples are tested.
         let most = emitter.sets.iter().flat_map(|set| set.count).sum::<u32>().max(1) as usize;
-        shares.par_chunks_mut(RUN).enumerate().for_each(|(run, shares)| {
+        spread_out(shares.chunks_mut(RUN)).for_each(|(run, shares)| {
             let first = run * RUN;
             context.piece(shares.len(), || {
                 let mut open = Vec::new();
@@ -123,7 +124,7 @@ impl<'a> Band<'a> {
     /// Casts a ray from each surface point of a wave to a light, and notes the answers. Returns the number of rays.
     fn first_rays(&self, wave: &HostWave, emitter: &Emitter, answers: &[AtomicU8]) -> u64 {
         let is_own = std::ptr::eq(wave.hits, self.wave.hits);
-        let runs = (0..wave.hits.len().div_ceil(RUN)).into_par_iter().map(|run| {
+        let runs = spread_out(0..wave.hits.len().div_ceil(RUN)).map(|(_, run)| {
             let rays = run * RUN..wave.hits.len().min((run + 1) * RUN);
             let mut cast = 0;
             let trace = || cast = self.first_rays_of(wave, emitter, rays.clone(), answers);

@@ -17,6 +17,7 @@ use crate::shadow::ShadowTarget;
 use crate::shadow::cuts::Cuts;
 use crate::shadow::occlusion::{Bits, Offsets, ProjectedLights, gathered};
 use crate::shadow::projected_light::{Emitter, ProjectedLight};
+use crate::steps::spread_out;
 use crate::surface::SurfacePoint;
 
 /// Maximum number of surface points per task.
@@ -28,7 +29,7 @@ pub(crate) fn area_shadows(wave: &HostWave, target: &ShadowTarget) -> Visibility
     let emitters = Emitter::all(wave, target, &rows);
     let mut visibility = Visibility { weighed: true, ..Visibility::dark(wave.group(), wave.hits.len()) };
     let level = Level::new();
-    visibility.parts(BATCH).into_par_iter().enumerate().for_each(|(number, mut shares)| {
+    spread_out(visibility.parts(BATCH)).for_each(|(number, mut shares)| {
         let first = number * BATCH;
         let rays = first..wave.hits.len().min(first + BATCH);
         wave.context.piece(rays.len(), || {

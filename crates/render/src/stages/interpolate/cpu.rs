@@ -16,6 +16,7 @@ use crate::data::visibility::Visibility;
 use crate::data::wave::{HostSeen, HostWave};
 use crate::light_mesh::{CellPoints, LightMesh, Span, UsedPoints, Windows, point_of, sum_in_both, sum_of_products};
 use crate::shadow::{above_horizon, fallback};
+use crate::steps::spread_out;
 
 /// Number of surface points per task.
 const RUN: usize = 4096;
@@ -40,7 +41,7 @@ impl Interpolation<'_> {
         let members = cells.members();
         let mut shares = vec![0.0; members.len() * lights];
         let parts = parts_of(&mut shares, runs.iter().map(|run| cells.slots_of(run).len() * lights));
-        let fallbacks = runs.par_iter().zip(parts).map(|(run, shares)| {
+        let fallbacks = spread_out(runs.iter().zip(parts)).map(|(_, (run, shares))| {
             let fill = || dispatch!(level, simd => self.fill(simd, &windows, run.clone(), shares));
             self.wave.context.piece(cells.slots_of(run).len(), fill)
         });

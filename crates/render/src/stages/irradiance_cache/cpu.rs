@@ -11,7 +11,7 @@ use super::fine::{self, CoarseRecords};
 use super::light::Light;
 use super::lookup::{Links, Place};
 use super::scene::Scene;
-use super::{Gathering, POINTS_AT_ONCE};
+use super::{BYTES_OF_POINT, Gathering, POINTS_AT_ONCE};
 use crate::data::wave::HostWave;
 use crate::shading::normal_seen;
 use crate::steps::Steps;
@@ -47,17 +47,50 @@ struct Ask {
     share: f32,
 }
 
+/// Some of the points of a wave.
+#[derive(Clone, Copy)]
+struct Points {
+    first: usize,
+    step: usize,
+    count: usize,
+}
+
+impl Points {
+    /// Parts of so many points that are computed one after the other: `sampled`, each is a sample of all, otherwise neighbours.
+    fn parts(points: usize, sampled: bool) -> Vec<Points> {
+        let starts = (0..points).step_by(POINTS_AT_ONCE);
+        let parts = starts.len();
+        if sampled {
+            return (0..parts)
+                .map(|first| Points { first, step: parts, count: (points - first).div_ceil(parts) })
+                .collect();
+        }
+        starts.map(|first| Points { first, step: 1, count: POINTS_AT_ONCE.min(points - first) }).collect()
+    }
+
+    /// The number in the wave of one of them.
+    #[inline(always)]
+    fn at(&self, index: usize) -> usize {
+        self.first + index * self.step
+    }
+}
+
 /// The mean radiance that each surface point of a wave receives, weighted by the cosine; zero for rays that see nothing.
 pub(crate) fn gather(wave: &HostWave, how: &Gathering, kept: &mut SurfaceLight) -> Vec<Vec3> {
     let mut light = vec![Vec3::ZERO; wave.hits.len()];
     let scene = Scene { context: wave.context, scene: wave.scene, rays_at_once: how.rays_at_once };
-    for (part, light) in light.chunks_mut(POINTS_AT_ONCE).enumerate() {
+    // Of samples of all, the first asks for most records: then progress is known. If they don't fit, few are asked for at a time.
+    let sampled = how.most_kept.is_none_or(|most| kept.memory() + BYTES_OF_POINT * light.len() as u64 <= most);
+    let parts = Points::parts(light.len(), sampled);
+    let sharing = how.sharing(kept.fine.is_empty(), sampled);
+    let mut steps = Steps::new(wave.context, parts.iter().map(|part| part.count), sharing);
+    for points in parts {
         if how.most_kept.is_some_and(|most| kept.memory() > most) {
             *kept = SurfaceLight::default();
         }
-        let mut steps = Steps::new(wave.context, light.len());
-        gather_part(wave, &scene, how, kept, (part * POINTS_AT_ONCE, light), &mut steps);
-        steps.end();
+        let found = gather_part(wave, &scene, how, kept, points, &mut steps);
+        found.into_iter().enumerate().for_each(|(index, found)| light[points.at(index)] = found);
+        steps.end_part();
     }
     light
 }
@@ -67,18 +100,18 @@ fn gather_part(
     scene: &Scene,
     how: &Gathering,
     kept: &mut SurfaceLight,
-    (first, light): (usize, &mut [Vec3]),
+    points: Points,
     steps: &mut Steps,
-) {
+) -> Vec<Vec3> {
     // 1. Where light is asked for: at one level, or between two.
     let asks = |index: usize| {
-        let point = wave.surface_point(first + index);
+        let point = wave.surface_point(points.at(index));
         let levels = how.levels(point.position).into_iter().filter(|(_, share)| *share > 0.0);
         levels.map(move |(level, share)| Ask { index, point, level, share })
     };
-    let seen = (0..light.len()).into_par_iter().filter(|index| wave.sees(first + index));
+    let seen = (0..points.count).into_par_iter().filter(|&index| wave.sees(points.at(index)));
     let asks: Vec<Ask> = seen.flat_map_iter(asks).collect();
-    let normal = |ask: &Ask| normal_seen(wave, first + ask.index);
+    let normal = |ask: &Ask| normal_seen(wave, points.at(ask.index));
 
     // 2. to 3. The mean of fine records. Where there is none, the point counts as one itself.
     let means = if how.brute_force { vec![None; asks.len()] } else { means(scene, how, kept, (&asks, normal), steps) };
@@ -97,9 +130,11 @@ fn gather_part(
     };
     let own = misses.iter().zip(own).map(|(ask, own): (&&Ask, Light)| (*ask, own.at(normal(ask) - ask.point.normal)));
     let means = asks.iter().zip(means).filter_map(|(ask, mean)| Some((ask, mean?)));
+    let mut light = vec![Vec3::ZERO; points.count];
     for (ask, mean) in means.chain(own) {
         light[ask.index] += ask.share * mean.max(Vec3::ZERO);
     }
+    light
 }
 
 /// The mean of what the fine records around receive; `None` where no record is seen.

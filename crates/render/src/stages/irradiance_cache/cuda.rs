@@ -123,6 +123,8 @@ pub(crate) fn gather<R: Runtime>(
     let device = Device { cuda, wave, rays: at_once };
     let rays = wave.rays.len();
     let result = cuda.pool().zeros("gathered light", rays)?;
+    let sizes = (0..rays).step_by(at_once).map(|first| at_once.min(rays - first));
+    let mut steps = Steps::new(wave.context, sizes, how.sharing(light.tables.is_none(), false));
     for first in (0..rays).step_by(at_once) {
         wave.context.check()?;
         let most = cuda.memory_left().map(|left| (left + light.memory()) / PART_KEPT);
@@ -132,10 +134,9 @@ pub(crate) fn gather<R: Runtime>(
         // In case of an error it is lost: tables may be incomplete.
         let mut tables = light.take(&device, most)?;
         let count = at_once.min(rays - first);
-        let mut steps = Steps::new(wave.context, count);
         gather_part(&device, how, &mut tables, (first..first + count, &result), &mut steps)?;
         light.tables = Some(tables);
-        steps.end();
+        steps.end_part();
     }
     Ok(DeviceGathered { light: result })
 }

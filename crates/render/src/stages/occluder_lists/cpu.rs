@@ -23,6 +23,7 @@ use crate::shadow::projected_light::Emitter;
 use crate::shadow::sample_ray::SampleRays;
 use crate::shadow::terminator::ShadowPoint;
 use crate::shadow::weights::Weighed;
+use crate::steps::spread_out;
 use crate::surface::SurfacePoint;
 
 /// Bundles per task.
@@ -57,7 +58,7 @@ pub(crate) fn occluder_lists(wave: &HostWave, bundles: &Bundles, target: &Shadow
     // Each share has one writer.
     let rays = wave.hits.len();
     let shares: Vec<AtomicU32> = (0..emitters.len() * rays).map(|_| AtomicU32::new(0)).collect();
-    (0..bundles.len().div_ceil(RUN)).into_par_iter().for_each(|run| {
+    spread_out(0..bundles.len().div_ceil(RUN)).for_each(|(_, run)| {
         let run = run * RUN..bundles.len().min((run + 1) * RUN);
         let points = run.clone().map(|bundle| bundles.members(bundle).len()).sum();
         wave.context.piece(points, || {

@@ -20,6 +20,7 @@ use crate::data::wave::{HostWave, Wave};
 use crate::footprint::Cone;
 use crate::prepared::PreparedScene;
 use crate::shading::ids::ids_of;
+use crate::steps::spread_out;
 
 /// Number of pixels per task.
 const BATCH: usize = 256;
@@ -46,7 +47,7 @@ pub(crate) fn pixel_samples(
     let (level, count) = (Level::new(), numbers.len());
     let depths = Depths::new(&rays, &hits, first);
     let mut all_hits: Vec<Hit> = bytemuck::zeroed_vec(pixels * count);
-    all_hits.par_chunks_mut(BATCH * count).enumerate().for_each_init(
+    spread_out(all_hits.chunks_mut(BATCH * count)).for_each_init(
         || (Vec::new(), Vec::new(), scene.geometry.beams()),
         |(rays, limits, beams), (batch, hits)| {
             context.piece(hits.len(), || {

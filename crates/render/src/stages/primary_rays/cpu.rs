@@ -11,6 +11,7 @@ use crate::data::clip::Limits;
 use crate::data::rays::RayList;
 use crate::prepared::PreparedScene;
 use crate::render_context::RenderContext;
+use crate::steps::spread_out;
 use crate::view::View;
 
 /// Number of rays per task, at most: enough to keep the dispatch cheap, few enough to balance the threads.
@@ -69,7 +70,7 @@ pub(crate) fn closest_hits(
 ) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; list.rays.len()];
     let batch = batch(list.rays.len());
-    list.rays.par_chunks(batch).zip(hits.par_chunks_mut(batch)).enumerate().for_each(|(task, (rays, hits))| {
+    spread_out(list.rays.chunks(batch).zip(hits.chunks_mut(batch))).for_each(|(task, (rays, hits))| {
         piece(rays.len(), &mut || {
             if list.clip.cuts() {
                 let first = task * batch;

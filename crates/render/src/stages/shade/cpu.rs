@@ -11,6 +11,7 @@ use crate::shading::environment::missed;
 use crate::shading::ids::ids_of;
 use crate::shading::seen_lights::SeenLights;
 use crate::shading::{LightTargets, Surface, catches, luminance};
+use crate::steps::spread_out;
 
 /// Number of rays per task.
 const BATCH: usize = 2048;
@@ -24,7 +25,7 @@ pub(crate) fn shade(wave: &HostWave, visibility: &Visibility, gathered: Option<&
         0 => vec![Vec3::ZERO; wave.hits.len()],
         _ => std::mem::take(&mut picture.sums),
     };
-    sums.par_chunks_mut(BATCH).enumerate().for_each(|(batch, sums)| {
+    spread_out(sums.chunks_mut(BATCH)).for_each(|(batch, sums)| {
         wave.context.piece(sums.len(), || {
             for (ray, sum) in (batch * BATCH..).zip(sums) {
                 if wave.sees(ray) {

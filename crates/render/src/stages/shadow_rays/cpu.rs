@@ -9,6 +9,7 @@ use crate::data::wave::HostWave;
 use crate::shadow::projected_light::Emitter;
 use crate::shadow::terminator::ShadowPoint;
 use crate::shadow::{SEGMENTS, ShadowTarget, hidden};
+use crate::steps::spread_out;
 use crate::surface::long_segment;
 
 /// Maximum number of surface points per task.
@@ -21,7 +22,7 @@ pub(crate) fn shadow_rays(wave: &HostWave, target: &ShadowTarget) -> Visibility 
     let most = wave.lights().iter().map(|light| target.samples(light)).max().unwrap_or(1);
     let batch = (SEGMENTS / most as usize).clamp(1, BATCH);
     let mut visibility = Visibility::dark(wave.group(), wave.hits.len());
-    visibility.parts(batch).into_par_iter().enumerate().for_each(|(number, shares)| {
+    spread_out(visibility.parts(batch)).for_each(|(number, shares)| {
         let first = number * batch;
         let rays = first..wave.hits.len().min(first + batch);
         wave.context.piece(rays.len(), || {

@@ -13,6 +13,7 @@ use crate::data::masks::Masks;
 use crate::data::wave::HostWave;
 use crate::light_mesh::{CellPoints, LightMesh, point_of};
 use crate::settings::ShortTests;
+use crate::steps::spread_out;
 use crate::surface::SurfacePoint;
 
 /// Surface points per task.
@@ -33,9 +34,8 @@ pub(crate) fn short_tests(wave: &HostWave, cells: &CellGroups, mesh: &LightMesh)
 
     let level = Level::new();
     let work = Run { wave, mesh, cells };
-    let counts = pieces
-        .into_par_iter()
-        .map(|(run, piece)| {
+    let counts = spread_out(pieces)
+        .map(|(_, (run, piece))| {
             wave.context.piece(piece.len() / words, || match wave.context.short_tests {
                 ShortTests::Cells => dispatch!(level, simd => work.by_cell(simd, run.clone(), piece)),
                 ShortTests::Plain => work.plain(run.clone(), piece),

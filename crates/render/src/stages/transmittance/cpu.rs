@@ -16,6 +16,7 @@ use crate::shading::tint::transmittance_at;
 use crate::shadow::projected_light::Emitter;
 use crate::shadow::{ShadowTarget, hidden};
 use crate::stages::primary_rays::cpu::batch;
+use crate::steps::spread_out;
 use crate::surface::{SurfacePoint, gap_behind, long_segment};
 
 /// So many samples are followed about as fast as it is asked whether they may meet anything.
@@ -34,7 +35,7 @@ pub(crate) fn transmittance(
     let emitters: Vec<_> = levels.iter().zip(&rows).map(|(target, rows)| Emitter::all(&wave, target, rows)).collect();
     visibility.passed = visibility.share.par_iter().map(|&share| Vec3::splat(share)).collect();
     let size = batch(wave.hits.len());
-    visibility.colored_parts(size).into_par_iter().enumerate().for_each(|(number, mut planes)| {
+    spread_out(visibility.colored_parts(size)).for_each(|(number, mut planes)| {
         let first = number * size;
         let rays = first..wave.hits.len().min(first + size);
         wave.context.piece(rays.len(), || {

@@ -76,15 +76,26 @@ fn a_share_that_was_told_stays_when_more_is_found_to_do() {
 }
 
 #[test]
+fn little_is_told_to_be_done_while_most_of_the_rest_is_a_guess() {
+    let (work, log) = (Work::new(), Log::default());
+    work.expect(Pieces::of(Stage::Shade, 1.0).and(Stage::Gather, 1.0));
+    // By what it costs elsewhere, gathering is soon done: so much that nearly all seems to be.
+    run(&work, &log, Stage::Shade, 1.0, 30);
+    assert!(log.last().done < 0.3, "{:?}", log.last());
+    run(&work, &log, Stage::Gather, 1.0, 30);
+    assert_eq!(log.last().done, 1.0);
+}
+
+#[test]
 fn a_part_is_told_as_a_part_of_the_whole() {
     // The third of four frames that take ten seconds each; its own estimate is wrong.
     let third = |done, left| {
-        Progress { done, seconds: 10.0 * done, left: Some(left) }.of_whole([0.5, 0.75], 20.0, 20.0 + 10.0 * done)
+        Progress { done, seconds: 10.0 * done, left: Some(left) }.of_whole([0.5, 0.75], Some(40.0), 20.0 + 10.0 * done)
     };
     let begun = third(0.0, 300.0);
     assert!(begun.done == 0.5 && (begun.left.unwrap() - 20.0).abs() < 1.0, "{begun:?}");
     let half = third(0.5, 5.0);
     assert_eq!((half.done, half.left), (0.625, Some(15.0)));
-    let last = Progress { done: 1.0, seconds: 9.0, left: Some(0.0) }.of_whole([0.75, 1.0], 30.0, 39.0);
+    let last = Progress { done: 1.0, seconds: 9.0, left: Some(0.0) }.of_whole([0.75, 1.0], Some(40.0), 39.0);
     assert_eq!((last.done, last.left), (1.0, Some(0.0)));
 }

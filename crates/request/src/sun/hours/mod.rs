@@ -37,7 +37,7 @@ use super::{HoursFile, HoursFormat, SunStudy};
 use crate::context::Context;
 use crate::error::{Error, OutputError};
 use crate::files::{publish, ready};
-use crate::host::{Host, Part, RENDERING};
+use crate::host::{Host, Parts, RENDERING};
 use crate::words::Words;
 use points::Finer;
 use suns::{BYTES_AT_ONCE, MAX_AT_ONCE, suns};
@@ -104,9 +104,9 @@ impl SunHours {
         let (mut seen, mut hours) = (None, vec![0.0_f64; width * height]);
         // A night is an image, too: what the pixels see.
         let night = suns.is_empty().then_some(suns);
-        let (start, parts) = (Instant::now(), suns.len().div_ceil(at_once).max(1));
-        for (index, suns) in suns.chunks(at_once).chain(night).enumerate() {
-            let part = Part::nth(host, index, parts, start.elapsed().as_secs_f64());
+        let mut parts = Parts::new(suns.len().div_ceil(at_once).max(1));
+        for suns in suns.chunks(at_once).chain(night) {
+            let (start, part) = (Instant::now(), parts.next(host));
             let dark = |(light, _): &(Light, f64)| light.clone().with_intensity(Vec3::ZERO);
             let lights: Lights = suns.iter().map(dark).collect();
             let lit = prepared.with_lights(lights.with_ambient(Vec3::ZERO));
@@ -119,6 +119,7 @@ impl SunHours {
                 hours.par_iter_mut().zip(plane).for_each(add);
             }
             seen.get_or_insert_with(|| without_light(frame));
+            parts.took(start.elapsed().as_secs_f64());
         }
         let frame = seen.expect("there is an image at least");
         let layers = frame.layers().expect("they were asked for");
