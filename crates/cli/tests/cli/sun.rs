@@ -63,7 +63,7 @@ fn hours_need_no_film() {
     let outputs = ["--sun-hours", "h.csv", "--sun-hours", "h.exr", "--sun-hours", "h.PNG"];
     let done = place.good(&study(sun, &outputs));
     let summary = done.stderr.lines().last().unwrap();
-    assert!(summary.starts_with("hours of direct sun of 9 moments: "), "{summary}");
+    assert!(summary.starts_with("hours of direct sun, 9 moments 60 min apart: "), "{summary}");
     assert_eq!(place.files(), ["h.PNG", "h.csv", "h.exr", "room.toml", "tower.toml"]);
     let table = String::from_utf8(place.read("h.csv")).unwrap();
     let floor = table.lines().find(|line| line.starts_with("floor,")).unwrap();
@@ -103,13 +103,25 @@ fn studies_that_cannot_be_made_are_refused_at_once() {
         (day, &["-o", "d.#.png", "--sky", "uniform"], "--sun needs a clear sky"),
         (day, &["-o", "d.#.png", "--turntable", "3"], "cannot be used with"),
         (day, &["-o", "d.#.png", "--environment", "p.hdr"], "cannot be used with"),
-        (day, &[], "--output"),
+        (
+            day,
+            &[],
+            "--sun needs an output; add -o film.####.png for a frame of each STEP, --sun-hours hours.png for the hours of direct sun, or both",
+        ),
         (day, &["--sun-hours", "h.jpg"], "--sun-hours h.jpg: unknown format; use the extension exr, png or csv"),
         (day, &["--sun-hours", "none/h.csv"], "none"),
         (day, &["--sun-hours", "h.csv", "--sun-hours", "./h.csv"], "are the same file"),
         (day, &["--sun-hours", "h.png", "-o", "h.png"], "has one for each frame"),
         (day, &["--sun-hours", "h.csv", "--layers", "l.exr"], "--output"),
-        (day, &["--sun-hours", "h.csv", "--skip-existing"], "--output"),
+        (
+            day,
+            &["--sun-hours", "h.csv", "--skip-existing"],
+            "--skip-existing is for frames of a film, and hours of direct sun have none; leave it out (files of hours are replaced)",
+        ),
+        (day, &["--sun-hours", "h.csv", "--overwrite"], "--overwrite is for frames of a film"),
+        (day, &["--sun-hours", "h.csv", "--resume"], "or write frames, too (-o film.####.png)"),
+        (day, &["--sun-hours", "h.csv", "--frames", "1-2"], "--frames is for frames of a film"),
+        (day, &["--sun-hours", "h.csv", "--fps", "12"], "--fps is for frames of a film"),
         (
             "78,15,2026-12-21+01:00,00:00-24:00/1h",
             &["--sun-hours", "h.csv", "-o", "d.#.png"],
