@@ -169,3 +169,38 @@ fn glass_is_told() {
     let alone = place.run(&[&RENDER[..], &["-o", "a.png", "--glass", "open"]].concat());
     assert!(alone.code == Some(2) && alone.stderr.contains("--sun <"), "{alone:?}");
 }
+
+/// Two nodes of a file that have the same name, beside each other on the ground.
+const CHAIRS: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+    "nodes": [{"name": "chair", "mesh": 0}, {"name": "chair", "mesh": 0, "translation": [2, 0, 0]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn objects_of_one_name_have_a_row_each() {
+    let place = Place::new();
+    place.write("chairs.gltf", CHAIRS);
+    let sun = "48,0,2026-06-21Z,10:00-14:00/1h";
+    for stored in ["always", "never"] {
+        place.good(&[
+            "render",
+            "chairs.gltf",
+            "--size",
+            "64x48",
+            "--sun",
+            sun,
+            "--sun-hours",
+            "h.csv",
+            "--instances",
+            stored,
+        ]);
+        let table = String::from_utf8(place.read("h.csv")).unwrap();
+        assert_eq!(table.lines().filter(|line| line.starts_with("chair,")).count(), 2, "{stored}: {table}");
+    }
+    // Mattes know the names alone: both are in the layers, and read again.
+    place.good(&["render", "chairs.gltf", "-o", "a.png", "--size", "64x48", "--layers", "l.exr"]);
+    let layers = Frame::load(place.path("l.exr")).unwrap();
+    assert_eq!(layers.layers().unwrap().object.names, ["chair", "chair", "ground"]);
+}
