@@ -21,6 +21,12 @@ AMBIENT = [
     ("RAYS", "Gathered by Rays", "Gathered by thousands of rays at each surface point: slow, the reference"),
 ]
 
+GLASS = [
+    ("OPEN", "Open", "It hides no sun; what is at least half opaque does"),
+    ("CLOSED", "Closed", "It hides the sun as a wall does"),
+    ("TINTED", "Tinted", "Behind it counts the share of the light that it lets through"),
+]
+
 #: What each technique is in settings of a render.
 SETTINGS = {
     "LISTS": {"mode": "light-mesh", "lookup": "lists"},

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
-from .choices import AMBIENT, QUALITIES, TECHNIQUES
+from .choices import AMBIENT, GLASS, QUALITIES, TECHNIQUES
 
 #: Kept, because Blender does not keep the texts of items that a function returns.
 _devices = []
@@ -60,11 +60,7 @@ class LightmeshSunSettings(bpy.types.PropertyGroup):
     )
     glass: EnumProperty(
         name="Glass",
-        items=(
-            ("OPEN", "Open", "It hides no sun; what is at least half opaque does", 0),
-            ("CLOSED", "Closed", "It hides the sun as a wall does", 1),
-            ("TINTED", "Tinted", "Behind it counts the share of the light that it lets through", 2),
-        ),
+        items=GLASS,
         default="OPEN",
         description="What panes and other surfaces that let light through do to hours of sun",
     )

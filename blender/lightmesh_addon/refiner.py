@@ -33,9 +33,15 @@ class Refiner:
         self.version = 0
 
     def show(
-        self, renderer: Callable[[], lightmesh.Renderer], exported: Exported, camera: lightmesh.Camera, chosen: dict[str, Any], size: tuple[int, int]
+        self,
+        renderer: Callable[[], lightmesh.Renderer],
+        exported: Exported,
+        camera: Callable[[], lightmesh.Camera],
+        chosen: dict[str, Any],
+        size: tuple[int, int],
     ) -> None:
-        """Renders this from now on. `renderer` is called in the thread, for a device may take a while to start."""
+        """Renders this from now on. `renderer` is called in the thread, for a device may take a while to start, and `camera` is, too: one that cannot
+        be used is an error of the picture."""
         with self._wake:
             self._request = (renderer, exported, camera, chosen, size)
             self.busy = True
@@ -71,12 +77,13 @@ class Refiner:
                 cancel = self._cancel = lightmesh.Cancel()
             try:
                 device = renderer()
+                looking = camera()
                 if exported is not shown or prepared is None:
-                    scene = exported.scene(camera, shown, prepared)
+                    scene = exported.scene(looking, shown, prepared)
                     prepared = device.prepare(scene, before=prepared, cancel=cancel, size=size, **chosen)
                     shown = exported
                 else:
-                    prepared = prepared.with_camera(camera)
+                    prepared = prepared.with_camera(looking)
                 for share, stage in settings.stages(chosen):
                     part = tuple(max(1, round(share * side)) for side in size)
                     frame = device.render(prepared, cancel=cancel, size=part, **stage)

@@ -72,19 +72,16 @@ class Viewport:
         if self.exported is None:
             return
         scene, region, view = depsgraph.scene, context.region, context.region_data
+        depths = camera.Depths.of_view(view, context.space_data, scene, self.exported.bounds)
         size = (max(1, region.width), max(1, region.height))
         chosen = {**settings.of_scene(scene), **self.exported.settings, "layers": self.exported.has_holdouts}
         device = settings.device(scene)
-        key = (size, tuple(sorted(chosen.items())), device, *(tuple(map(tuple, m)) for m in (view.view_matrix, view.window_matrix)))
+        key = (size, tuple(sorted(chosen.items())), device, depths, *(tuple(map(tuple, m)) for m in (view.view_matrix, view.window_matrix)))
         if key == self._view:
             return
         self._view = key
-        back = 0.0
-        if view.view_perspective == "ORTHO":
-            bounds = self.exported.bounds
-            back = float(np.linalg.norm(np.subtract(*bounds))) + view.view_distance if bounds else 0.0
         world, window = np.linalg.inv(np.array(view.view_matrix)), np.array(view.window_matrix)
-        looking = camera.of_matrices(world, window, size, back=back)
+        looking = lambda: camera.of_matrices(world, window, size, depths=depths)  # noqa: E731
         self.refiner.show(lambda: session.renderer(*device), self.exported, looking, chosen, size)
 
     def _look(self) -> float | None:

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 import pytest
 from lightmesh_addon import engine as engine_module
+from lightmesh_addon.export import camera
 from lightmesh_addon.viewport import Viewport
 from mathutils import Vector
 from support import HEIGHT, WIDTH, light, lightmesh, stage
@@ -53,6 +54,8 @@ class Painter:
 class View:
     """A viewport of `size` pixels that looks through the scene's camera, as Blender's context describes it."""
 
+    space: SimpleNamespace | None = None
+
     def __init__(self, size: tuple[int, int] = (WIDTH, HEIGHT)) -> None:
         self.engine, self.painter = Engine(), Painter()
         self.viewport = Viewport(self.engine, self.painter)
@@ -68,10 +71,13 @@ class View:
         obj = bpy.context.scene.camera.evaluated_get(depsgraph)
         self.view.view_matrix = obj.matrix_world.inverted()
         self.view.window_matrix = obj.calc_matrix_camera(depsgraph, x=self.region.width, y=self.region.height)
-        return SimpleNamespace(region=self.region, region_data=self.view, space_data=None)
+        return SimpleNamespace(region=self.region, region_data=self.view, space_data=self.space)
 
     def update(self) -> None:
-        self.viewport.update(self.context(), self.depsgraph)
+        # Which objects a view shows can be asked of one in a window alone.
+        context = self.context()
+        context.space_data = None
+        self.viewport.update(context, self.depsgraph)
 
     def draw(self) -> None:
         self.viewport.draw(self.context(), self.depsgraph)
@@ -229,6 +235,45 @@ def test_orthographic_view(view: View) -> None:
     view.view.view_perspective = "ORTHO"
     inside = view.settle()
     assert np.abs(inside - expected).mean() < 0.02 * expected.mean()
+
+
+def test_clip_planes_of_the_camera(view: View) -> None:
+    """A camera view shows what the final render does, and what cannot be seen is an error that goes away."""
+    data = bpy.context.scene.camera.data
+    data.clip_start, data.clip_end = 8.2, 1000.0
+    view.update()
+    shown, final = view.settle()[::-1, :, :3], lightmesh().rgb
+    assert np.abs(shown - final).mean() < 0.01 * final.mean()
+    data.clip_start = 0.1
+    assert np.abs(view.settle()[::-1, :, :3] - final).mean() > 0.05 * final.mean()
+    data.clip_start, data.clip_end = 9.0, 8.0
+    view.settle()
+    assert view.engine.stats[-1] and "far" in view.engine.stats[-1]
+    data.clip_end = 1000.0
+    view.settle()
+    assert view.engine.stats[-1] == ""
+
+
+def test_clip_planes_of_the_view(view: View) -> None:
+    """As in Cycles: those of a perspective view are its own, a parallel one sees half of Clip End before and behind its eye, and a camera of the view
+    comes before that of the scene."""
+    scene, bounds = bpy.context.scene, ((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
+    other = SimpleNamespace(type="CAMERA", data=SimpleNamespace(clip_start=2.0, clip_end=3.0))
+    space = SimpleNamespace(clip_start=0.5, clip_end=40.0, use_local_camera=False, camera=other)
+    seen = lambda kind, distance=10.0: camera.Depths.of_view(SimpleNamespace(view_perspective=kind, view_distance=distance), space, scene, bounds)  # noqa: E731
+    assert seen("PERSP") == (0.5, 40.0, 0.0)
+    assert seen("CAMERA") == pytest.approx((scene.camera.data.clip_start, scene.camera.data.clip_end, 0.0))
+    diagonal = float(np.linalg.norm([2.0, 2.0, 2.0]))
+    assert seen("ORTHO") == pytest.approx((0.0, 20.0 + 10.0 + diagonal, 10.0 + diagonal))
+    assert seen("ORTHO", 100.0) == (0.0, 40.0, 20.0)
+    space.use_local_camera = True
+    assert seen("CAMERA") == (2.0, 3.0, 0.0)
+
+    view.space, view.view.view_perspective = SimpleNamespace(clip_start=8.2, clip_end=1000.0), "PERSP"
+    view.update()
+    cut = view.settle()
+    bpy.context.scene.camera.data.clip_start = 8.2
+    np.testing.assert_allclose(cut[::-1, :, :3].mean(), lightmesh().rgb.mean(), rtol=0.01)
 
 
 def test_engine_makes_a_viewport() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import bpy
 import lightmesh
@@ -15,6 +15,37 @@ if TYPE_CHECKING:
 
 class CameraError(Exception):
     """A camera that cannot be shown."""
+
+
+class Depths(NamedTuple):
+    """The depths that a camera sees, from `near` to `far`. Orthographic ones are moved `back` first: a viewport sees what is behind its eye, too."""
+
+    near: float = 0.0
+    far: float | None = None
+    back: float = 0.0
+
+    @staticmethod
+    def of_view(
+        view: bpy.types.RegionView3D,
+        space: bpy.types.SpaceView3D | None,
+        scene: bpy.types.Scene,
+        bounds: tuple[tuple[float, ...], tuple[float, ...]] | None,
+    ) -> Depths:
+        """Those of a viewport of objects within `bounds`, as Cycles chooses them: of the camera that it looks through, or of the view's own Clip
+        Start and End. Orthographic views see as far behind the eye as before it, half of Clip End each."""
+        if view.view_perspective == "CAMERA":
+            looking = space.camera if space and space.use_local_camera else scene.camera
+            return Depths.of_camera(looking.data) if looking and looking.type == "CAMERA" else Depths()
+        if view.view_perspective != "ORTHO":
+            return Depths(space.clip_start, space.clip_end) if space else Depths()
+        # Where all objects are in front of it: rays from farther away would be less exact.
+        back = float(np.linalg.norm(np.subtract(*bounds))) + view.view_distance if bounds else 0.0
+        half = 0.5 * space.clip_end if space else None
+        return Depths(0.0, None, back) if half is None else Depths(0.0, min(back, half) + half, min(back, half))
+
+    @staticmethod
+    def of_camera(data: bpy.types.Camera) -> Depths:
+        return Depths(data.clip_start, data.clip_end)
 
 
 def of_scene(depsgraph: bpy.types.Depsgraph, override: bpy.types.Object | None = None) -> tuple[lightmesh.Camera, dict[str, Any]]:
@@ -46,8 +77,7 @@ def of_object(
         raise CameraError(f"Camera “{obj.name}” sees nothing: choose a Clip End beyond its Clip Start in its lens settings.")
     width, height = size
     window = obj.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=aspect[0], scale_y=aspect[1])
-    clip = {"near": data.clip_start, "far": data.clip_end}
-    return of_matrices(np.array(obj.matrix_world), np.array(window), size, name=obj.name, **clip)
+    return of_matrices(np.array(obj.matrix_world), np.array(window), size, name=obj.name, depths=Depths.of_camera(data))
 
 
 def is_mirrored(obj: bpy.types.Object) -> bool:
@@ -70,12 +100,9 @@ def of_matrices(
     window: np.ndarray,
     size: tuple[int, int],
     name: str = "",
-    back: float = 0.0,
-    near: float = 0.0,
-    far: float | None = None,
+    depths: Depths = Depths(),
 ) -> lightmesh.Camera:
-    """The camera with the matrix `world` and the projection `window`, which sees the depths from `near` to `far`; of mirrored ones, what is to be
-    flipped. Orthographic ones are moved `back`: a viewport sees what is behind its eye, too."""
+    """The camera with the matrix `world` and the projection `window`, which sees these `depths`; of mirrored ones, what is to be flipped."""
     right, up, behind = (column / np.linalg.norm(column) for column in world[:3, :3].T)
     position, direction = world[:3, 3], -behind
     if window[3, 3] == 0.0:
@@ -85,11 +112,11 @@ def of_matrices(
     else:
         shift = (-0.5 * window[0, 3] * window[1, 1] / window[0, 0], -0.5 * window[1, 3])
         lens = {"height": 2.0 / window[1, 1]}
-        position = position - back * direction
+        position = position - depths.back * direction
     if is_mirroring(world):
         shift = (-shift[0], shift[1])
     shift = tuple(map(float, shift))
-    return lightmesh.Camera(position, direction=direction, up=up, shift=shift, name=name, near=near, far=far, **lens)
+    return lightmesh.Camera(position, direction=direction, up=up, shift=shift, name=name, near=depths.near, far=depths.far, **lens)
 
 
 def full_size(render: bpy.types.RenderSettings) -> tuple[int, int]:

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use lightmesh::render::{AmbientSource, Quality};
+use lightmesh::render::{AmbientSource, Glass, Quality};
 use lightmesh::request::table::{Group, Shape};
 use lightmesh::request::{FIELDS, Field, Words, field};
 use lightmesh::{Lookup, Mode};
@@ -172,6 +172,7 @@ fn choices() -> String {
     text += &listed("QUALITIES", &mut Quality::ALL.iter().map(|quality| item(quality.name(), quality.help())));
     text += &listed("TECHNIQUES", &mut techniques.iter().map(|(name, help, _)| item(name, help)));
     text += &listed("AMBIENT", &mut AmbientSource::ALL.iter().map(|source| item(source.name(), source.help())));
+    text += &listed("GLASS", &mut Glass::ALL.iter().map(|glass| item(glass.name(), glass.help())));
     text += "\n#: What each technique is in settings of a render.\nSETTINGS = {\n";
     text.extend(
         techniques.iter().map(|(name, _, settings)| format!("    \"{}\": {{{settings}}},\n", identifier(name))),

@@ -146,16 +146,18 @@ fn exit_code_of(error: &Error) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    use lightmesh::render::Setting;
+    use lightmesh::render::{Setting, SettingSet};
     use lightmesh_memory::OverBudget;
 
     use super::*;
 
     #[test]
     fn what_the_machine_cannot_do_is_told_from_bad_input() {
-        let memory = RenderError::Memory { buffer: "masks", short: OverBudget { needed: 2, left: 1, limit: None } };
+        let short = OverBudget { needed: 2, left: 1, limit: None };
+        let memory = RenderError::Memory { buffer: "masks", short, helps: SettingSet::default() };
         let device = RenderError::Device { device: "cuda".into(), reason: "none".into() };
-        let full = RenderError::DeviceMemory { device: "Fake".into(), buffer: "masks", needed: 2, free: Some(1) };
+        let (buffer, helps) = ("masks", SettingSet::default());
+        let full = RenderError::DeviceMemory { device: "Fake".into(), buffer, needed: 2, free: Some(1), helps };
         let fault = RenderError::DeviceFault { device: "Fake".into(), reason: "none".into() };
         let setting = RenderError::Setting { setting: Setting::Size, value: "0x0".into(), remedy: "choose another" };
         let errors = [memory, device, full, fault, setting, RenderError::Cancelled];

@@ -2,6 +2,7 @@
 //!
 //! The library's messages name settings in words; the program adds the flag of each in brackets.
 
+use lightmesh::image::CompareError;
 use lightmesh::render::Setting;
 use lightmesh::render::accel::GridError;
 use lightmesh::request::{Error, RequestError, Words};
@@ -27,6 +28,7 @@ pub(crate) fn that_mend(failure: &Failure) -> Vec<String> {
         Failure::Request(error) => return that_mend_request(error),
         Failure::Grid(GridError::Memory { .. }) => &["--grid", "--memory-limit"],
         Failure::Grid(_) => &["--grid"],
+        Failure::Compare(CompareError::Part { .. }) => &["lightmesh render --crop X,Y,W,H"],
         #[cfg(feature = "bench")]
         Failure::Bench(error) => match **error {
             BenchError::OwnScenes(_) => &["--scene", "--size"],
@@ -93,8 +95,13 @@ mod tests {
 
     #[test]
     fn a_failure_names_the_flags_that_mend_it() {
-        let memory = RenderError::Memory { buffer: "masks", short: OverBudget { needed: 2, left: 1, limit: None } };
-        assert_eq!(that_mend(&memory.into()), ["--memory-limit", "--size", "--step", "--radius"]);
+        let short = OverBudget { needed: 2, left: 1, limit: None };
+        let memory = RenderError::Memory {
+            buffer: "masks",
+            short,
+            helps: [Setting::Size, Setting::AmbientLight].into_iter().collect(),
+        };
+        assert_eq!(that_mend(&memory.into()), ["--memory-limit", "--size", "--ambient-light"]);
         let strict = LoadError::Warnings { path: "a.obj".into(), warnings: vec!["odd".into()] };
         assert_eq!(that_mend(&strict.into()), ["--strict"]);
         assert!(that_mend(&RenderError::Cancelled.into()).is_empty());

@@ -8,8 +8,8 @@ use glam::{DVec3, Vec3};
 use lightmesh_emulator::{Emulator, Traffic};
 use lightmesh_render::backend::Cuda;
 use lightmesh_render::{
-    Acceleration, Cache, Frame, Lookup, Mode, Observer, PreparedScene, RenderError, Settings, Stage, Step, Unobserved,
-    render_on, render_on_with,
+    Acceleration, Cache, Frame, Lookup, Mode, Observer, PreparedScene, RenderError, Setting, Settings, Stage, Step,
+    Unobserved, render_on, render_on_with,
 };
 use lightmesh_scene::{Geometry, LightKind, Scene, Up};
 use lightmesh_testkit::{Watch, pile, runs_all};
@@ -163,9 +163,12 @@ fn same_bands_of(scene: &Scene, settings: impl Fn() -> Settings) {
 fn too_little_memory_is_an_error_that_names_the_buffer() {
     for bytes in [1, 1000, 5000] {
         let (frame, ..) = render(&scene(), Emulator::with_memory(bytes), &settings());
-        let Err(RenderError::DeviceMemory { device, buffer, needed, free }) = frame.map(|_| ()) else {
-            panic!("{bytes} bytes cannot suffice")
-        };
+        let Err(error) = frame else { panic!("{bytes} bytes cannot suffice") };
+        assert!(
+            error.settings().contains(&Setting::Size) && error.to_string().contains("or a smaller image"),
+            "{error}"
+        );
+        let RenderError::DeviceMemory { device, buffer, needed, free, .. } = error else { panic!("{error}") };
         assert_eq!(device, "emulated CUDA device");
         assert!(
             !buffer.is_empty() && needed > 0 && free.is_some_and(|free| free <= bytes),

@@ -7,7 +7,7 @@ pub const MAX_RANKS: usize = 6;
 /// known.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matte {
-    /// The names: that of thing n is number n − 1. No two are the same.
+    /// The names: that of thing n is number n − 1. Some may be the same: Cryptomattes, which tell things by name, do not tell these apart.
     pub names: Vec<String>,
     /// What the nearest sample of each pixel sees.
     pub nearest: Vec<u32>,

@@ -177,6 +177,14 @@ pub(crate) fn vectors(what: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<Vec3
     Ok(array.as_slice()?.as_chunks().0.iter().map(|&numbers| Vec3::from_array(numbers)).collect())
 }
 
+/// The same, or one that stands for each of `count`.
+pub(crate) fn one_or_each(what: &str, array: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Vec3>> {
+    let all = converted::<f32>(what, array, "float32")?;
+    let [3] = all.shape() else { return vectors(what, array) };
+    let row = all.call_method1("reshape", ((1, 3),))?;
+    Ok(vec![vectors(what, &row)?[0]; count])
+}
+
 /// Linear colours, (N, 3). Codes of 8 bits are shares of 255; of other whole numbers it cannot be known what they are shares of.
 pub(crate) fn colors(what: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<Vec3>> {
     let any = array.py().import("numpy")?.call_method1("asarray", (array,))?;

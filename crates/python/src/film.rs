@@ -50,6 +50,8 @@ pub(crate) struct Production {
     /// Camera, lights and surroundings that are given as objects.
     objects: Box<dyn Fn(&mut Scene) + Send + Sync>,
     order: Order,
+    /// The threads that were asked for.
+    threads: Option<usize>,
 }
 
 impl Production {
@@ -76,12 +78,19 @@ impl Production {
                 PathBuf::from("-")
             }
         };
-        Ok(Production { source, objects: Box::new(objects), order: Order { scene, request, files } })
+        let order = Order { scene, request, files };
+        Ok(Production { source, objects: Box::new(objects), order, threads: None })
+    }
+
+    /// By a renderer of which so many threads were asked for.
+    pub(crate) fn on_threads(self, threads: Option<usize>) -> Production {
+        Production { threads, ..self }
     }
 
     /// Opens, stages and prepares the scene.
     fn session(self, engine: &Renderer, watch: &Watch) -> Result<Session, Error> {
-        let Production { source, objects, order } = self;
+        let Production { source, objects, order, threads } = self;
+        watch.note_threads(threads, engine);
         let format = order.format();
         let plan = Plan::new(order)?;
         let mut scene = match source {
@@ -103,6 +112,7 @@ pub(crate) struct Film {
     /// What is left to do.
     frames: PerProcess<Mutex<Frames>>,
     wishes: Wishes,
+    notes: Vec<String>,
 }
 
 impl Film {
@@ -114,15 +124,16 @@ impl Film {
     ) -> PyResult<Film> {
         let begin = |watch: &Watch| {
             if watch.cancelled() {
-                return Err(RenderError::Cancelled.into());
+                return Err(Error::from(RenderError::Cancelled));
             }
-            production.session(engine, watch)?.frames(engine, watch)
+            let frames = production.session(engine, watch)?.frames(engine, watch)?;
+            Ok((frames, watch.notes()))
         };
         // No frame is done by that.
         let beginning = Wishes { progress: None, ..wishes.of_part(py) };
-        let frames = watch::run(py, beginning, begin)?.or_raise()?;
+        let (frames, notes) = watch::run(py, beginning, begin)?.or_raise()?;
         let (engine, frames) = (PerProcess::new(Arc::clone(engine)), PerProcess::new(Mutex::new(frames)));
-        Ok(Film { engine, frames, wishes })
+        Ok(Film { engine, frames, wishes, notes })
     }
 
     /// The renderer, and what is left to do.
@@ -154,6 +165,12 @@ impl Film {
             Ok::<_, Error>(rendered.map(|rendered| Frame::of_film(rendered, request, watch.notes())))
         };
         watch::run(py, self.wishes.of_part(py), next)?.or_raise()
+    }
+
+    /// What was chosen for all frames, as sentences.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.iter().map(|note| visible(note).into_owned()).collect()
     }
 
     /// How many frames are left.
@@ -236,7 +253,11 @@ impl SunHours {
             None => None,
         };
         match path {
-            Target::Path(path) => process::detach(py, || self.found.save_as(&path, format))?.or_raise(),
+            Target::Path(path) => {
+                let named = HoursFormat::from_path(&path).map(HoursFormat::name);
+                target::warn_if_misnamed(py, &path, format.map(HoursFormat::name), named)?;
+                process::detach(py, || self.found.save_as(&path, format))?.or_raise()
+            }
             Target::File(file) => {
                 let format = format.ok_or_else(|| target::no_format("exr, png or csv"))?;
                 target::write(py, &file, &process::detach(py, || self.found.encode(format))?.or_raise()?)

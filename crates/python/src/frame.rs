@@ -206,6 +206,8 @@ impl Frame {
         let image = &self.rendered.image;
         match path {
             Target::Path(path) => {
+                let named = Format::from_path(&path).map(Format::name);
+                target::warn_if_misnamed(py, &path, options.format.map(Format::name), named)?;
                 let ready = process::detach(py, || image.ready_with(&path, &options))?.or_raise()?;
                 publish([ready]).or_raise()
             }

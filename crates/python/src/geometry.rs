@@ -230,7 +230,7 @@ pub(crate) fn scene(name: &str, objects: &[Geometry], instancing: Instancing) ->
             }
         }
         for place in &object.places {
-            builder.begin_object(&object.name);
+            builder.begin_object(object.name.as_str());
             match &arrays.positions {
                 Points::Single(positions) => builder.add(arrays.part::<Vec3>(positions), place, material)?,
                 Points::Double(positions) => builder.add(arrays.part::<DVec3>(positions), place, material)?,

@@ -27,6 +27,7 @@ mod settings;
 mod stored;
 mod target;
 mod texture;
+mod warning;
 mod watch;
 
 use pyo3::prelude::*;

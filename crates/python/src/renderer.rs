@@ -21,7 +21,12 @@ use crate::light::LightList;
 use crate::prepared::{Failure, Kept, Order, PreparedScene, Subject};
 use crate::process::{self, PerProcess};
 use crate::scene::Scene;
-use crate::watch::{self, Cancel, Watch, Wishes};
+use crate::warning::{self, About};
+use crate::watch::{self, Callback, Cancel, Watch, Wishes};
+
+/// What to say of the visibility of nothing.
+const NO_LIGHTS: &str = "the scene has no lights, so there is no visibility of any: the array has no columns; give lights, or a sky with a sun \
+                         (lights, sky)";
 
 /// Renders scenes on one `device`: "auto", "cpu", "cuda" or "cuda:1", with so many `threads` of the CPU, or all. Can be used by several threads at
 /// once; the interpreter is free while it works. A process that is forked uses it with threads of its own, if the device is the CPU. Raises
@@ -116,7 +121,7 @@ impl Renderer {
         scene: Given<Bound<'_, Scene>>,
         before: Option<Given<Bound<'_, PreparedScene>>>,
         lights: Option<LightList>,
-        progress: Option<Given<Py<PyAny>>>,
+        progress: Option<Callback>,
         cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PreparedScene> {
@@ -144,7 +149,7 @@ impl Renderer {
         scene: Subject<'_>,
         cache: Option<Given<Bound<'_, MeshCache>>>,
         lights: Option<LightList>,
-        progress: Option<Given<Py<PyAny>>>,
+        progress: Option<Callback>,
         cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Frame> {
@@ -153,6 +158,7 @@ impl Renderer {
         let mut order = Order::new(&scene, lights, settings)?;
         order.plan = order.plan.of_picture();
         let render = |watch: &Watch| {
+            watch.note_threads(self.threads, &machine.engine);
             let (kept, staged) = order.prepare(&machine.engine, &machine.last, None, watch)?;
             let mut cache = cache.map(MeshCache::lock);
             let (frame, stops) =
@@ -169,8 +175,7 @@ impl Renderer {
         let (frame, refused): (Frame, Option<MeshFileError>) =
             rendered.map_err(|error: Failure| error.into_exception())?;
         if let Some(refused) = refused {
-            let category = py.import("lightmesh._errors")?.getattr("MeshFileWarning")?;
-            py.import("warnings")?.call_method1("warn", (refused.to_string(), category))?;
+            warning::warn(py, About::MeshFile, &refused.to_string())?;
         }
         Ok(frame)
     }
@@ -193,14 +198,14 @@ impl Renderer {
         stats: Option<Given<PathBuf>>,
         mesh_file: Option<Given<PathBuf>>,
         lights: Option<LightList>,
-        progress: Option<Given<Py<PyAny>>>,
+        progress: Option<Callback>,
         cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Film> {
         let [output, layers, stats, mesh_file] =
             [output, layers_file, stats, mesh_file].map(|path| path.map(|Given(path)| path));
         let files = Files { output, layers, stats, mesh_file, sun_hours: Vec::new() };
-        let production = Production::new(scene, files, lights, settings)?;
+        let production = Production::new(scene, files, lights, settings)?.on_threads(self.threads);
         Film::begin(py, &self.machine()?.engine, production, Wishes::new(progress, cancel))
     }
 
@@ -214,21 +219,21 @@ impl Renderer {
         &self,
         py: Python<'_>,
         scene: Source,
-        progress: Option<Given<Py<PyAny>>>,
+        progress: Option<Callback>,
         cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<SunHours> {
         SunHours::find(
             py,
             &self.machine()?.engine,
-            Production::new(scene, Files::default(), None, settings)?,
+            Production::new(scene, Files::default(), None, settings)?.on_threads(self.threads),
             Wishes::new(progress, cancel),
         )
     }
 
-    /// The visible share of each light, (N, L), at surface `points` (N, 3) of `scene` with these `normals` (N, 3), world coordinates: to bake vertex
-    /// colours and lightmaps. `lights`, one or a sequence, stand in for the scene's. What lies behind a surface is dark. `progress` is called now and
-    /// then, and `cancel` stops it.
+    /// The visible share of each light, (N, L), at surface `points` (N, 3) of `scene` with these `normals`, (N, 3) or one for all, world coordinates: to
+    /// bake vertex colours and lightmaps. `lights`, one or a sequence, stand in for the scene's, of which a scene may have none: L is 0 then, with a
+    /// `LightmeshWarning`, for no studio is added. What lies behind a surface is dark. `progress` is called now and then, and `cancel` stops it.
     ///
     /// Settings:
     #[doc = include_str!("docs/image.txt")]
@@ -241,19 +246,20 @@ impl Renderer {
         normals: &Bound<'py, PyAny>,
         scene: Subject<'_>,
         lights: Option<LightList>,
-        progress: Option<Given<Py<PyAny>>>,
+        progress: Option<Callback>,
         cancel: Option<Given<Cancel>>,
         settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let machine = self.machine()?;
         let mut order = Order::new(&scene, None, settings)?;
+        let are_given = lights.is_some();
         if let Some(LightList(lights)) = lights {
             order.scene.set_all_lights(&lights);
         }
         // Those that an image gets by default are nobody's.
         order.scene.world.lights.chosen = true;
         let points = convert::points("points", points)?.double();
-        let normals = convert::vectors("normals", normals)?;
+        let normals = convert::one_or_each("normals", normals, points.len())?;
         let find = |watch: &Watch| {
             let (kept, _) = order.prepare(&machine.engine, &machine.last, None, watch)?;
             let world = &kept.prepared.scene;
@@ -262,6 +268,9 @@ impl Renderer {
             Ok::<_, Failure>(([found.lights(), found.points()], found.into_shares()))
         };
         let (shape, shares) = watch::run(py, Wishes::new(progress, cancel), find)?.or_raise()?;
+        if shape[0] == 0 && !are_given {
+            warning::warn(py, About::Other, NO_LIGHTS)?;
+        }
         // By light, then point, in memory.
         let array: Bound<'py, PyArray2<f32>> = convert::owned(py, shares).reshape(shape)?;
         array.getattr("T")

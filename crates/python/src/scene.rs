@@ -26,6 +26,7 @@ use crate::planes::{column, table};
 use crate::process;
 use crate::settings;
 use crate::stored::{self, Reduced};
+use crate::warning::{self, About};
 
 /// What built-in scenes are called on the command line.
 const BUILTIN: &str = "builtin:";
@@ -482,14 +483,6 @@ impl Scene {
 
     /// Python's warnings of what was corrected, ignored or guessed.
     fn warn(&self, py: Python<'_>) -> PyResult<()> {
-        if self.world.warnings.is_empty() {
-            return Ok(());
-        }
-        let category = py.import("lightmesh._errors")?.getattr("SceneWarning")?;
-        let warn = py.import("warnings")?.getattr("warn")?;
-        for warning in self.warning_texts() {
-            warn.call1((warning, &category, 1))?;
-        }
-        Ok(())
+        self.world.warnings.iter().try_for_each(|text| warning::warn(py, About::Scene, text))
     }
 }

@@ -1,13 +1,16 @@
 //! Where files go: to a path, or into an object of Python that is open for writing.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use lightmesh::request::Words;
+use lightmesh::request::files::misnamed;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::argument::Given;
 use crate::errors;
+use crate::warning::{self, About};
 
 /// Where a file goes.
 pub(crate) enum Target {
@@ -42,6 +45,17 @@ pub(crate) fn write(py: Python<'_>, file: &Py<PyAny>, bytes: &[u8]) -> PyResult<
         }
         Err(error) => Err(error),
     }
+}
+
+/// Warns of a file that is `written` in another format than its extension has `named`, where both are known.
+pub(crate) fn warn_if_misnamed(
+    py: Python<'_>,
+    path: &Path,
+    written: Option<&str>,
+    named: Option<&str>,
+) -> PyResult<()> {
+    let text = written.zip(named).and_then(|formats| misnamed(("path", path), formats, Words::Fields));
+    text.map_or(Ok(()), |text| warning::warn(py, About::Other, &text))
 }
 
 /// A format that no extension says.

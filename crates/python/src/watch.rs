@@ -9,12 +9,14 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use lightmesh::request::Host;
-use lightmesh::{Observer, Stage};
+use lightmesh::request::{Host, Words, fewer_threads};
+use lightmesh::{Observer, Renderer, Stage};
 use pyo3::prelude::*;
 
 use crate::argument::Given;
+use crate::errors;
 use crate::process;
+use crate::warning::{self, About};
 
 /// How often the caller's thread looks in.
 const TICK: Duration = Duration::from_millis(40);
@@ -74,6 +76,21 @@ impl Cancel {
     }
 }
 
+/// What is called with progress.
+pub(crate) struct Callback(Py<PyAny>);
+
+impl FromPyObject<'_, '_> for Callback {
+    type Error = PyErr;
+
+    /// Fails at once, not when there is something to tell.
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Callback> {
+        if object.is_callable() {
+            return Ok(Callback(object.to_owned().unbind()));
+        }
+        Err(errors::wrong_type("a function of a Progress, as `follow(bar)` makes one of a bar", &object))
+    }
+}
+
 /// What a caller wants to know, and how it stops the work.
 #[derive(Default)]
 pub(crate) struct Wishes {
@@ -84,8 +101,8 @@ pub(crate) struct Wishes {
 }
 
 impl Wishes {
-    pub(crate) fn new(progress: Option<Given<Py<PyAny>>>, cancel: Option<Given<Cancel>>) -> Wishes {
-        let (progress, cancel) = (progress.map(|Given(progress)| progress), cancel.map(|Given(cancel)| cancel));
+    pub(crate) fn new(progress: Option<Callback>, cancel: Option<Given<Cancel>>) -> Wishes {
+        let (progress, cancel) = (progress.map(|Callback(progress)| progress), cancel.map(|Given(cancel)| cancel));
         Wishes { progress, cancel, is_part: false }
     }
 
@@ -111,6 +128,7 @@ struct State {
     is_new: bool,
     is_over: bool,
     notes: Vec<String>,
+    warnings: Vec<(About, String)>,
 }
 
 impl State {
@@ -127,6 +145,24 @@ impl Watch {
 
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Keeps a warning for the caller's thread.
+    fn warn(&self, about: About, text: &str) {
+        self.state().warnings.push((about, text.to_owned()));
+    }
+
+    /// Tells what there is to warn of.
+    fn tell_warnings(&self, py: Python<'_>) -> PyResult<()> {
+        let warnings = std::mem::take(&mut self.state().warnings);
+        warnings.iter().try_for_each(|(about, text)| warning::warn(py, *about, text))
+    }
+
+    /// Notes that fewer threads work than were asked for, if it is so.
+    pub(crate) fn note_threads(&self, asked: Option<usize>, engine: &Renderer) {
+        if let Some(text) = asked.and_then(|asked| fewer_threads(asked, engine, Words::Fields)) {
+            self.note(&text);
+        }
     }
 
     /// What was said to people.
@@ -181,7 +217,15 @@ impl Observer for Watch {
     }
 }
 
-impl Host for Watch {}
+impl Host for Watch {
+    fn warning(&self, text: &str) {
+        self.warn(About::Other, text);
+    }
+
+    fn warning_of_scene(&self, text: &str) {
+        self.warn(About::Scene, text);
+    }
+}
 
 /// Tells the caller's thread that the work is over, however it ends.
 struct Ending<'a>(&'a Watch);
@@ -231,6 +275,7 @@ pub(crate) fn run<T: Send, E: Send>(
         return Err(raised);
     }
     let result = result?;
+    watch.tell_warnings(py)?;
     // A render that was stopped may have given what was finished.
     let is_complete = result.is_ok() && !watch.cancelled() && progress.is_some() && !is_part;
     if let Some(news) = is_complete.then(|| watch.complete()).flatten() {

@@ -63,14 +63,35 @@ def test_a_scene_of_arrays(renderer, scene, tmp_path):
 
 
 def test_what_is_no_film(renderer, scene):
-    with pytest.raises(lightmesh.SettingError, match="turntable"):
+    with pytest.raises(lightmesh.SettingError, match="^nothing moves, so there is no film; add turntable, sun, frames or fps$"):
         renderer.film(scene, size=(32, 24))
+    with pytest.raises(lightmesh.SettingError, match="^overwrite is for films; add turntable, sun, frames or fps, or leave it out$"):
+        renderer.film(scene, size=(32, 24), overwrite=True)
+    with pytest.raises(lightmesh.SettingError, match="^skip_existing needs output; give it, too, or leave skip_existing out$"):
+        renderer.film(scene, turntable=3, size=(32, 24), skip_existing=True)
     with pytest.raises(lightmesh.ArgumentError, match="unexpected keyword argument 'turntabel'. Did you mean 'turntable'?"):
         renderer.film(scene, turntabel=3)
     with pytest.raises(lightmesh.SettingError, match="turntable cannot be 0: 0 is not in 1..=1000000"):
         renderer.film(scene, turntable=0)
     with pytest.raises(lightmesh.SettingError, match="sun is needed"):
         renderer.sun_hours(scene, size=(32, 24))
+    for setting, value in [("overwrite", True), ("frames", "1-2"), ("fps", 12)]:
+        with pytest.raises(lightmesh.SettingError, match=f"{setting} .*frames"):
+            renderer.sun_hours(scene, sun=DAY, size=(32, 24), **{setting: value})
+
+
+def test_what_is_to_know_of_a_film_is_told(tmp_path, scene):
+    """Its settings, and what its file has that is not as it should be."""
+    (tmp_path / "a.obj").write_text("mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    with pytest.warns(lightmesh.SceneWarning, match="none"):
+        renderer = lightmesh.Renderer("cpu", threads=1000)
+        renderer.film(tmp_path / "a.obj", turntable=1, size=(16, 12))
+    with pytest.warns(lightmesh.LightmeshWarning, match="f.#?1?.png is a bmp file, as format says"):
+        film = renderer.film(scene, tmp_path / "f.#.png", turntable=1, size=(16, 12), format="bmp")
+    assert renderer.threads < 1000 and any(note.startswith(f"threads=1000: using {renderer.threads}, ") for note in film.notes)
+    notes = renderer.render(scene, size=(16, 12)).notes
+    assert any(note.startswith("threads=1000: using ") for note in notes)
+    assert not any(note.startswith("threads") for note in lightmesh.Renderer("cpu", threads=2).render(scene, size=(16, 12)).notes)
 
 
 def test_cancelled(renderer, scene):
@@ -113,6 +134,8 @@ def test_hours_of_direct_sun(renderer, tmp_path):
         memory = io.BytesIO()
         found.save(memory, format=extension)
         assert memory.getvalue() == (tmp_path / f"a.{extension}").read_bytes()
+    with pytest.warns(lightmesh.LightmeshWarning, match=r"path .*c\.png is a csv file, as format says, but its extension is that of png files"):
+        found.save(tmp_path / "c.png", format="csv")
     found.save(tmp_path / "c", format="csv")
     assert (tmp_path / "c").read_text() == found.table
     with pytest.raises(lightmesh.SettingError, match="exr, png or csv"):

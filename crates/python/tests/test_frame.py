@@ -4,6 +4,7 @@ import gc
 import io
 import sys
 import tempfile
+import warnings
 
 import numpy as np
 import pytest
@@ -195,3 +196,12 @@ def test_what_cannot_be_saved(frame, tmp_path):
     with pytest.raises(TypeError, match="Did you mean 'bit_depth'"):
         frame.save(tmp_path / "a.png", bit_dept=8)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_named_as_another_is_warned_of(frame, tmp_path):
+    with pytest.warns(lightmesh.LightmeshWarning, match=r"path .*a\.png is an exr file, as format says, but .* name it .*a\.exr, or leave out format"):
+        frame.save(tmp_path / "a.png", format="exr")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x76\x2f\x31\x01")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        frame.save(tmp_path / "a", format="png")

@@ -1,5 +1,7 @@
 """Soft visibility at points of one's own."""
 
+import warnings
+
 import numpy as np
 import pytest
 from conftest import floor
@@ -40,7 +42,21 @@ def test_lights_stand_in_for_those_of_the_scene(renderer):
 def test_no_points_and_no_lights(renderer):
     empty = np.zeros((0, 3), np.float32)
     assert renderer.visibility(empty, empty, half_covered()).shape == (0, 1)
-    assert renderer.visibility([(0, 0, 0)], [UP], half_covered(), lights=[]).shape == (1, 0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert renderer.visibility([(0, 0, 0)], [UP], half_covered(), lights=[]).shape == (1, 0)
+    with pytest.warns(lightmesh.LightmeshWarning, match="the scene has no lights"):
+        assert renderer.visibility([(0, 0, 0)], [UP], Scene([floor()])).shape == (1, 0)
+
+
+def test_one_normal_for_all(renderer):
+    points = [(0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (-1.5, 0.0, 0.0)]
+    each, one = (renderer.visibility(points, normals, half_covered(), samples=64) for normals in ([UP] * 3, UP))
+    np.testing.assert_array_equal(each, one)
+    with pytest.raises(lightmesh.GeometryError, match="normals"):
+        renderer.visibility(points, (0.0, 1.0), half_covered())
+    with pytest.raises(lightmesh.GeometryError, match="finite"):
+        renderer.visibility(points, (0.0, np.nan, 0.0), half_covered())
 
 
 def test_the_sun_of_a_sky_is_a_light(renderer):

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -68,6 +69,35 @@ def test_tqdm_follows(renderer, scene):
     with Bar(total=100, file=open(os.devnull, "w"), mininterval=0) as bar:
         renderer.render(scene, size=(320, 240), progress=lightmesh.follow(bar))
         assert bar.n == pytest.approx(100.0) and min(steps) >= 0.0
+
+
+class PlainBar:
+    """What `follow` needs of a bar, with the texts that tqdm would show."""
+
+    def __init__(self, total=None):
+        self.n, self.total, self.shown = 0, total, []
+
+    def update(self, n):
+        self.n += n
+        self.shown.append(str(self.n))
+
+
+@pytest.mark.parametrize(("total", "digits"), [(1.0, 3), (None, 3), (100, 1), (24, 2), (0.3, 4)])
+def test_bars_show_short_numbers(total, digits):
+    bar = PlainBar(total)
+    move = lightmesh.follow(bar)
+    for step in range(1, 1001):
+        move(SimpleNamespace(done=step / 1000 if step == 1000 else step * 0.000997))
+    assert all(len(text.partition(".")[2]) <= digits for text in bar.shown), bar.shown
+    assert bar.n == (total or 1.0) and len(set(bar.shown)) > 200
+
+
+def test_what_cannot_be_told_of_progress_is_refused_at_once(renderer, scene):
+    with pytest.raises(lightmesh.ArgumentError, match="give a bar of tqdm, or one like it, not int, which has no n, total, update"):
+        lightmesh.follow(3)
+    for work in (renderer.render, renderer.prepare, renderer.film):
+        with pytest.raises(lightmesh.ArgumentError, match="progress: give a function of a Progress.*, not int"):
+            work(scene, progress=3)
 
 
 def test_callback_is_called_by_the_thread_that_asked(renderer, scene):

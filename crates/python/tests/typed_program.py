@@ -313,6 +313,7 @@ def of_frame(frame: Frame, path: Path, file: IO[bytes], settings: SaveSettings) 
 
 def of_film(film: Film) -> None:
     assert_type(len(film), int)
+    assert_type(film.notes, list[str])
     assert_type(next(film), Frame)
     for frame in film:
         assert_type(frame, Frame)
@@ -510,6 +511,6 @@ def errors() -> None:
     ):
         error: lightmesh.LightmeshError = kind("text")
         error.add_note("note")
-    for category in (lightmesh.MeshFileWarning, lightmesh.SceneWarning):
+    for category in (lightmesh.LightmeshWarning, lightmesh.MeshFileWarning, lightmesh.SceneWarning):
         warning: UserWarning = category("text")
         print(warning)

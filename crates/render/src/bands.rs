@@ -6,6 +6,7 @@ use lightmesh_trace::accel::{Hit, Ray};
 use crate::error::RenderError;
 use crate::footprint::Cone;
 use crate::plan::Plan;
+use crate::settings::SettingSet;
 use crate::stages::irradiance_cache::Gathering;
 
 /// Memory reserved for everything that is not counted below: stacks, the segments in flight, allocator overhead.
@@ -43,7 +44,11 @@ pub fn rows_on_host(plan: &Plan) -> Result<u32, RenderError> {
 
 fn fits(plan: &Plan, buffer: &'static str, needed: u64) -> Result<(), RenderError> {
     match plan.left.filter(|left| needed > *left) {
-        Some(left) => Err(RenderError::Memory { buffer, short: OverBudget { needed, left, limit: plan.memory_limit } }),
+        Some(left) => Err(RenderError::Memory {
+            buffer,
+            short: OverBudget { needed, left, limit: plan.memory_limit },
+            helps: SettingSet::default(),
+        }),
         None => Ok(()),
     }
 }

@@ -8,7 +8,7 @@ use lightmesh_scene::GeometryError;
 use lightmesh_trace::accel::{GridError, GridFileError};
 
 use crate::light_mesh::{LatticeError, TemplateError};
-use crate::settings::Setting;
+use crate::settings::{Setting, SettingSet};
 
 /// Why an image could not be rendered.
 #[derive(Debug, thiserror::Error)]
@@ -72,14 +72,14 @@ pub enum RenderError {
         reason: String,
     },
     /// The image, or even one row of it, does not fit into the host's memory.
-    #[error(
-        "there is not enough memory for {buffer}: {short}; raise the limit, or choose a smaller image, a larger step or a smaller radius"
-    )]
+    #[error("there is not enough memory for {buffer}: {short}; raise the limit{}", or_choose("choose ", .helps))]
     Memory {
         /// What is counted.
         buffer: &'static str,
         /// Bytes needed and left.
         short: OverBudget,
+        /// The settings by which this work takes less.
+        helps: SettingSet,
     },
     /// The geometry is too large for the host's memory.
     #[error(
@@ -124,8 +124,8 @@ pub enum RenderError {
     },
     /// A device does not have enough memory, however few rows are rendered at once.
     #[error(
-        "{device} cannot hold {buffer}: {needed} bytes are needed, {} are free; choose a smaller image, a larger step or a smaller radius, or the device cpu",
-        free.map_or_else(|| "fewer".to_owned(), |free| free.to_string())
+        "{device} cannot hold {buffer}: {needed} bytes are needed, {} are free; choose the device cpu{}",
+        free.map_or_else(|| "fewer".to_owned(), |free| free.to_string()), or_choose("", .helps)
     )]
     DeviceMemory {
         /// The vendor's name for the device.
@@ -136,6 +136,8 @@ pub enum RenderError {
         needed: u64,
         /// Bytes that were free, if the device reports them.
         free: Option<u64>,
+        /// The settings by which this work takes less.
+        helps: SettingSet,
     },
     /// A device failed.
     #[error("{device} failed: {reason}; the device cpu renders without it")]
@@ -155,7 +157,7 @@ impl From<DeviceError> for RenderError {
         match error {
             DeviceError::Unusable { device, reason } => RenderError::Device { device, reason },
             DeviceError::Memory { device, buffer, needed, free } => {
-                RenderError::DeviceMemory { device, buffer, needed, free }
+                RenderError::DeviceMemory { device, buffer, needed, free, helps: SettingSet::default() }
             }
             DeviceError::Fault { device, reason } => RenderError::DeviceFault { device, reason },
         }
@@ -168,6 +170,17 @@ impl RenderError {
         matches!(self, RenderError::Memory { .. } | RenderError::BuildMemory { .. } | RenderError::TextureMemory { .. })
     }
 
+    /// The same of work that takes less memory if these settings are chosen otherwise.
+    pub(crate) fn helped_by(self, helps: SettingSet) -> RenderError {
+        match self {
+            RenderError::Memory { buffer, short, .. } => RenderError::Memory { buffer, short, helps },
+            RenderError::DeviceMemory { device, buffer, needed, free, .. } => {
+                RenderError::DeviceMemory { device, buffer, needed, free, helps }
+            }
+            other => other,
+        }
+    }
+
     /// The settings that the message mentions and that may solve the problem; empty if the cause lies elsewhere.
     pub fn settings(&self) -> Vec<Setting> {
         match self {
@@ -177,17 +190,25 @@ impl RenderError {
             RenderError::Setting { setting, .. } => vec![*setting],
             RenderError::Structure { .. } => vec![Setting::Acceleration, Setting::Device],
             RenderError::Threads { .. } => vec![Setting::Threads],
-            RenderError::Memory { .. } => vec![Setting::MemoryLimit, Setting::Size, Setting::Step, Setting::Radius],
+            RenderError::Memory { helps, .. } => [Setting::MemoryLimit].into_iter().chain(helps.iter()).collect(),
             RenderError::BuildMemory { .. } | RenderError::TextureMemory { .. } => vec![Setting::MemoryLimit],
-            RenderError::DeviceMemory { .. } => {
-                vec![Setting::Size, Setting::Step, Setting::Radius, Setting::Device]
-            }
+            RenderError::DeviceMemory { helps, .. } => [Setting::Device].into_iter().chain(helps.iter()).collect(),
             RenderError::Device { .. } | RenderError::DeviceFault { .. } => vec![Setting::Device],
             RenderError::Geometry(_)
             | RenderError::Points { .. }
             | RenderError::Point { .. }
             | RenderError::Cancelled => Vec::new(),
         }
+    }
+}
+
+/// What else helps where memory is short, as the end of a sentence.
+fn or_choose(choose: &str, helps: &SettingSet) -> String {
+    let choices: Vec<&str> = helps.iter().filter_map(Setting::that_takes_less).collect();
+    match choices.split_last() {
+        None => String::new(),
+        Some((only, [])) => format!(", or {choose}{only}"),
+        Some((last, others)) => format!(", or {choose}{} or {last}", others.join(", ")),
     }
 }
 

@@ -82,8 +82,8 @@ pub use probes::{GivenPoints, PointVisibility, Probes};
 pub use render_context::{RenderContext, Sampling};
 pub use renderer::{Frame, Renderer, render_on, render_on_with, visibility_on};
 pub use settings::{
-    Acceleration, AmbientSource, Crop, Filter, Glass, Lookup, Mode, Quality, Setting, Settings, ShadowTests, Sharing,
-    ShortTests, Step, UnknownCrop, UnknownStep,
+    Acceleration, AmbientSource, Crop, Filter, Glass, Lookup, Mode, Quality, Setting, SettingSet, Settings,
+    ShadowTests, Sharing, ShortTests, Step, UnknownCrop, UnknownStep,
 };
 pub use stage::{Seconds, Stage};
 pub use stages::irradiance_cache::Gathering;

@@ -6,7 +6,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser::Serialize
 
 use crate::error::RequestError;
 use crate::request::{FIELDS, Field, Request};
+use crate::settings::without_light_points;
 use crate::table::{Group, Kind, Value};
+use crate::words::Name;
 
 /// Names at least this much alike are suggested for each other.
 const ALIKE: f64 = 0.75;
@@ -48,10 +50,20 @@ impl Request {
         Err(RequestError::Value { setting: field.name, value, problem })
     }
 
+    /// The settings that are given of the frames of a film.
+    pub(crate) fn of_frames(&self) -> impl Iterator<Item = Name> {
+        FIELDS.iter().filter(|field| field.group == Group::Frames && field.is_given(self)).map(|field| field.name)
+    }
+
+    /// The setting that says what becomes of frames that exist, if one is given.
+    pub(crate) fn of_existing_frames(&self) -> Option<Name> {
+        self.of_frames().find(|name| ["resume", "skip_existing", "overwrite"].contains(name))
+    }
+
     /// Checks that settings can be given together.
     ///
     /// # Errors
-    /// [`RequestError::Conflict`] or [`RequestError::Requires`].
+    /// [`RequestError::Conflict`], [`RequestError::Requires`] or [`RequestError::NoLightPoints`].
     pub fn check(&self) -> Result<(), RequestError> {
         let given: Vec<&Field> = FIELDS.iter().filter(|field| field.is_given(self)).collect();
         let is_given = |name: &str| given.iter().any(|field| field.name == name);
@@ -61,6 +73,9 @@ impl Request {
             }
             if let Some(needed) = field.requires.filter(|name| !is_given(name)) {
                 return Err(RequestError::Requires { setting: field.name, needed });
+            }
+            if let Some(chosen) = without_light_points(self).filter(|_| field.is_of_light_points) {
+                return Err(RequestError::NoLightPoints { setting: field.name, chosen });
             }
         }
         Ok(())
@@ -160,6 +175,10 @@ mod tests {
         assert_eq!(
             message(r#"{"studio": true, "sky": "clear"}"#),
             "studio and sky cannot be given together; leave out one of them"
+        );
+        assert_eq!(
+            message(r#"{"step": 0.5, "lookup": "lists"}"#),
+            "step is of light points, which lookup=lists does not have; leave it out, or choose lookup=half-ball"
         );
         assert_eq!(
             message(r#"{"falloff": "inverse-square"}"#),

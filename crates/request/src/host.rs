@@ -49,6 +49,11 @@ pub trait Host: Observer {
         let _ = text;
     }
 
+    /// The same about the file of the scene.
+    fn warning_of_scene(&self, text: &str) {
+        self.warning(text);
+    }
+
     /// The same about images: the first one about each thing is enough, however many frames it holds for.
     fn warning_about(&self, what: &'static str, text: &str) {
         let _ = what;
@@ -193,6 +198,10 @@ impl Host for Part<'_> {
 
     fn warning(&self, text: &str) {
         self.host.warning(text);
+    }
+
+    fn warning_of_scene(&self, text: &str) {
+        self.host.warning_of_scene(text);
     }
 
     fn warning_about(&self, what: &'static str, text: &str) {

@@ -48,6 +48,6 @@ pub use order::{Order, format_of};
 pub use plan::{Plan, load_options};
 pub use request::{FIELDS, Field, Request};
 pub use save::describe;
-pub use session::{Frames, Session};
+pub use session::{Frames, Session, fewer_threads};
 pub use told::Told;
 pub use words::{Name, Words};

@@ -22,15 +22,17 @@ pub type Field = FieldOf<Request>;
 ///
 /// ```text
 /// /// What it means, with `names` of settings in backquotes.
-/// Group "Heading" name: Type = default, placeholder "N", in 1..=9, conflicts [other], requires other, bytes same;
+/// Group "Heading" name: Type = default, placeholder "N", in 1..=9, conflicts [other], requires other, of light_points, bytes same;
 /// ```
 ///
-/// of which all after the type may be left out. `bytes same`: those of images do not depend on it.
+/// of which all after the type may be left out. `of light_points`: it means nothing without them. `bytes same`: those of images do not depend on
+/// it.
 macro_rules! settings {
     ($(
         $(#[doc = $doc:literal])+
         $group:ident $heading:literal $name:ident: $type:ty $(= $default:expr)? $(, placeholder $placeholder:literal)?
-        $(, in $range:expr)? $(, conflicts [$($conflict:ident),*])? $(, requires $requires:ident)? $(, bytes $bytes:ident)?;
+        $(, in $range:expr)? $(, conflicts [$($conflict:ident),*])? $(, requires $requires:ident)? $(, of $of:ident)?
+        $(, bytes $bytes:ident)?;
     )*) => {
         /// What a picture of a scene is, and how it is made. The default is what `lightmesh render FILE` does.
         ///
@@ -61,6 +63,7 @@ macro_rules! settings {
             range: settings!(@range $($range)?),
             conflicts: &[$($(stringify!($conflict)),*)?],
             requires: settings!(@requires $($requires)?),
+            is_of_light_points: settings!(@of $($of)?),
             decides_bytes: settings!(@decides $($bytes)?),
             set: |request, value| request.$name.set(value),
             get: |request| request.$name.get(),
@@ -74,6 +77,8 @@ macro_rules! settings {
     (@range $range:expr) => { Some($range) };
     (@requires) => { None };
     (@requires $name:ident) => { Some(stringify!($name)) };
+    (@of) => { false };
+    (@of light_points) => { true };
     (@decides) => { true };
     (@decides same) => { false };
 }
@@ -166,13 +171,13 @@ settings! {
 
     /// Set the light-mesh step h in scene units; auto derives it from the size of a pixel in the scene [default: the
     /// scene's, else auto]
-    Image "Method" step: Option<Step>, placeholder "H|auto";
+    Image "Method" step: Option<Step>, placeholder "H|auto", of light_points;
 
     /// Set the interpolation radius in steps, r/h [default: the scene's, else 2.1]
-    Image "Method" radius: Option<Positive>, placeholder "R";
+    Image "Method" radius: Option<Positive>, placeholder "R", of light_points;
 
     /// Weight light points at distance d by their q = d/r [default: the scene's, else smooth]
-    Image "Method" weight: Option<Weight>;
+    Image "Method" weight: Option<Weight>, of light_points;
 
     /// Find the visibility of lights in light-mesh mode by this method
     Image "Method" lookup: Lookup;
@@ -188,7 +193,7 @@ settings! {
     Image "Image" filter: Filter;
 
     /// Evaluate short tests by this method; the image is the same
-    Image "Method" short_tests: ShortTests, bytes same;
+    Image "Method" short_tests: ShortTests, of light_points, bytes same;
 
     /// Take N samples of each light with a size, in each pixel or, with half-ball, at each light point [default: by
     /// `quality`; area 225, half-ball 4]

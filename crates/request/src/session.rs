@@ -34,7 +34,7 @@ impl Plan {
         let scene =
             host.during(&format!("reading {}", path.display()), || Scene::open_with(path, &self.load_options()))?;
         self.files.outputs.keep_scene(&scene)?;
-        scene.warnings.iter().for_each(|warning| host.warning(warning));
+        scene.warnings.iter().for_each(|warning| host.warning_of_scene(warning));
         Ok(scene)
     }
 
@@ -47,9 +47,9 @@ impl Plan {
     }
 }
 
-/// What to say if fewer threads are started than were asked for.
-fn fewer_threads(plan: &Plan, renderer: &Renderer, words: Words) -> Option<String> {
-    let (asked, started) = (usize::from(plan.threads?), renderer.threads());
+/// What to say if fewer threads are started than were `asked` for.
+pub fn fewer_threads(asked: usize, renderer: &Renderer, words: Words) -> Option<String> {
+    let started = renderer.threads();
     (started < asked).then(|| {
         format!(
             "{}: using {started}, since more are no faster on this machine; the image is the same",
@@ -70,7 +70,9 @@ impl Session {
         load: f64,
         host: &dyn Host,
     ) -> Result<Session, Error> {
-        if let Some(text) = fewer_threads(&plan, renderer, host.words()) {
+        if let Some(asked) = plan.threads
+            && let Some(text) = fewer_threads(asked.into(), renderer, host.words())
+        {
             host.note(&text);
         }
         if let Some(text) = plan.files.misnamed(host.words()) {
@@ -165,8 +167,12 @@ impl Session {
     /// The frames of a film, which are rendered one by one, and written if the plan has files. Exposure and step are chosen for the whole film first.
     ///
     /// # Errors
-    /// [`Error`]; [`RequestError::NoFilm`] if nothing moves.
+    /// [`Error`]; [`RequestError::NoFilm`] if nothing moves, [`RequestError::Requires`] if it is said what becomes of files of which there are none.
     pub fn frames(&self, renderer: &Renderer, host: &dyn Host) -> Result<Frames, Error> {
+        let order = &self.plan().order;
+        if let (None, Some(setting)) = (&order.files.output, order.request.of_existing_frames()) {
+            return Err(RequestError::Requires { setting, needed: "output" }.into());
+        }
         let mut range = self.plan().range(self.scene())?.ok_or(RequestError::NoFilm)?;
         let context = self.context(renderer, host);
         let (frames, writer) = if self.prepared.plan.order.files.output.is_some() {
@@ -192,9 +198,12 @@ impl Session {
     /// The hours of direct sun on what the picture shows.
     ///
     /// # Errors
-    /// [`Error`]; [`RequestError::Missing`] if no sun study is asked for.
+    /// [`Error`]; [`RequestError::Missing`] if no sun study is asked for, [`RequestError::OfFilm`] if frames are.
     pub fn sun_hours(&self, renderer: &Renderer, host: &dyn Host) -> Result<SunHours, Error> {
         let study = self.plan().sun.as_ref().ok_or(RequestError::Missing { setting: "sun" })?;
+        if let Some(setting) = self.plan().order.request.of_frames().next() {
+            return Err(RequestError::OfFilm { setting, has_hours: true }.into());
+        }
         SunHours::of_study(study, &self.prepared.scene, true, self.context(renderer, host))
     }
 }

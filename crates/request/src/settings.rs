@@ -1,11 +1,12 @@
 //! Requests as [`Settings`] of the renderer.
 
-use lightmesh_render::{Acceleration, Settings};
+use lightmesh_render::{Acceleration, Mode, Settings};
 use lightmesh_scene::SceneFormat;
 
 use crate::error::RequestError;
 use crate::request::Request;
 use crate::value::Background;
+use crate::words::Name;
 
 /// All settings of an image of a scene in this format, except the camera, which is part of the scene.
 pub(crate) fn settings(request: &Request, format: Option<SceneFormat>) -> Result<Settings, RequestError> {
@@ -36,6 +37,17 @@ pub(crate) fn settings(request: &Request, format: Option<SceneFormat>) -> Result
     settings.aa = request.aa;
     settings.memory_limit = request.memory_limit.map(|limit| limit.0);
     Ok(settings)
+}
+
+/// What has chosen shadows without light points, if something has: a setting and its value.
+pub(crate) fn without_light_points(request: &Request) -> Option<(Name, &'static str)> {
+    let mut settings = Settings::default().with_mode(request.mode).with_lookup(request.lookup);
+    settings.step = request.step;
+    settings.radius = request.radius.map(|radius| radius.0);
+    settings.weight = request.weight;
+    let of_mode = request.mode != Mode::default();
+    let chosen = if of_mode { ("mode", request.mode.name()) } else { ("lookup", settings.resolved_lookup().name()) };
+    (!settings.has_light_points()).then_some(chosen)
 }
 
 /// Grid parameters imply the grid. Only one of them is given.

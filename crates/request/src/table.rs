@@ -114,6 +114,8 @@ pub struct FieldOf<R> {
     pub conflicts: &'static [Name],
     /// A setting that it cannot be given without.
     pub requires: Option<Name>,
+    /// Whether it means something only where shadows come from light points.
+    pub is_of_light_points: bool,
     /// Whether the bytes of images depend on it. Others say by what and how fast they are made.
     pub decides_bytes: bool,
     pub(crate) set: fn(&mut R, &Value) -> Result<(), String>,

@@ -37,11 +37,11 @@ pub use formats::EnvironmentError;
 #[doc(hidden)]
 pub use model::packed;
 pub use model::{
-    Affine, Animation, Bounds, Camera, CameraError, Dielectric, Environment, EnvironmentLevel, FIRST_INSTANCED, Facets,
-    Falloff, Fov, Geometry, Instance, Instances, Instancing, Light, LightError, LightKind, LightMeshDefaults, Lights,
-    Material, Mesh, Moment, NormalMap, Objects, Opacity, OpacityChannel, OpacityMode, OwnedPositions, Position,
-    Positions, Projection, Scene, Sky, SkyError, SkyKind, Sun, SunError, SunPosition, Surroundings, Texture,
-    TextureUse, Textures, UNNAMED, UnknownName, Up, Weight, Wrap,
+    Affine, Animation, Bounds, Camera, CameraError, Dielectric, Empty, Environment, EnvironmentLevel, FIRST_INSTANCED,
+    Facets, Falloff, Fov, Geometry, Instance, Instances, Instancing, Light, LightError, LightKind, LightMeshDefaults,
+    Lights, Material, Mesh, Moment, NormalMap, ObjectKey, Objects, Opacity, OpacityChannel, OpacityMode,
+    OwnedPositions, Position, Positions, Projection, Scene, Sky, SkyError, SkyKind, Sun, SunError, SunPosition,
+    Surroundings, Texture, TextureUse, Textures, UNNAMED, UnknownName, Up, Weight, Wrap,
 };
 pub use optics::Principled;
 pub use staging::{Added, Lighting, UnknownCamera, UpInfo, Viewpoint};

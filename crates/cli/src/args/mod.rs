@@ -11,6 +11,7 @@ mod words;
 
 use std::path::PathBuf;
 
+use clap::builder::UnknownArgumentValueParser;
 use clap::{Arg, Args, CommandFactory, Parser, Subcommand};
 use lightmesh::request::value::{Bound, ByteSize, Dims, Smooth};
 use lightmesh::scene::Instancing;
@@ -192,6 +193,9 @@ pub(crate) struct CompareArgs {
     /// Save the FLIP error of each pixel as an image, from black (equal) to yellow (maximum error) [default: off]
     #[arg(long, value_name = "D.png")]
     pub(crate) diff: Option<PathBuf>,
+
+    #[arg(short, long, hide = true, value_parser = UnknownArgumentValueParser::suggest_arg("--diff"))]
+    pub(crate) output: Option<String>,
 
     /// Fail if the mean FLIP error exceeds X; of two exr or hdr files, HDR-FLIP, too [default: none]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
@@ -392,7 +396,7 @@ mod tests {
         let mut lightmesh = command();
         lightmesh.build();
         for (name, command) in commands(&lightmesh, "lightmesh") {
-            for flag in command.get_opts().filter(|flag| !flag.is_required_set()) {
+            for flag in command.get_opts().filter(|flag| !flag.is_required_set() && !flag.is_hide_set()) {
                 let (long, help) = (flag.get_long(), flag.get_help().map(ToString::to_string).unwrap_or_default());
                 // An image is needed, but for the hours of direct sun.
                 let is_needed = name == "lightmesh render" && long == Some("output");

@@ -17,7 +17,7 @@ pub(crate) struct RenderArgs {
 
     /// Write the image to this .bmp, .png, .exr or .jpg file, or `-` (standard output, with --format); a film also to
     /// .mp4, .mov, .mkv or .webm, by ffmpeg
-    #[arg(short, long, value_name = "OUT", required_unless_present = "sun_hours")]
+    #[arg(short, long, value_name = "OUT", required_unless_present_any = ["sun_hours", "sun"])]
     pub(crate) output: Option<PathBuf>,
 
     #[command(flatten)]

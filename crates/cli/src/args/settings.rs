@@ -105,7 +105,7 @@ fn flag(field: &'static Field) -> Arg {
     let help = Words::Flags.spell(field.doc.trim(), known);
     let mut arg = Arg::new(field.name).long(long).help(help).help_heading(field.heading);
     arg = arg.conflicts_with_all(field.conflicts);
-    for needed in field.requires.into_iter().chain((field.group == Group::Frames).then_some("output")) {
+    if let Some(needed) = field.requires {
         arg = arg.requires(needed);
     }
     if field.kind == Kind::Switch {

@@ -5,7 +5,7 @@ use std::time::Instant;
 use lightmesh::render::{Choice, Stats, devices};
 use lightmesh::request::film::FrameRange;
 use lightmesh::request::film::check_encoder;
-use lightmesh::request::{Error, Part, Plan, Session};
+use lightmesh::request::{Error, Part, Plan, RequestError, Session};
 use lightmesh::{Device, Frame, Observer, Renderer};
 use lightmesh_memory::Bytes;
 
@@ -19,7 +19,12 @@ use crate::progress::Watcher;
 const HOURS: f64 = 0.1;
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let plan = Plan::new(args.order())?;
+    let order = args.order();
+    // The parser lets that pass for a day alone, of which there is more than one output.
+    if order.files.output.is_none() && order.files.sun_hours.is_empty() {
+        return Err(RequestError::NothingOfSun.into());
+    }
+    let plan = Plan::new(order)?;
     if let Some(container) = plan.files.movie {
         check_encoder(&plan.order, container).map_err(Error::from)?;
     }
@@ -120,8 +125,9 @@ fn details(stats: &Stats) -> Vec<String> {
 fn summary(frame: &Frame, picture: &str) -> String {
     let (settings, seconds) = (&frame.stats.settings, &frame.stats.seconds);
     let [width, height] = frame.size();
+    let method = settings.lookup.unwrap_or(settings.mode);
     format!(
-        "{}, {width}x{height}, {}: {:.3} s (load {:.3} s, build {:.3} s, write {:.3} s), {}",
-        frame.stats.scene.name, settings.mode, seconds.render, seconds.load, seconds.build, seconds.write, picture
+        "{}, {width}x{height}, {method}: {:.3} s (load {:.3} s, build {:.3} s, write {:.3} s), {}",
+        frame.stats.scene.name, seconds.render, seconds.load, seconds.build, seconds.write, picture
     )
 }

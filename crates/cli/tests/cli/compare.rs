@@ -63,6 +63,30 @@ fn what_cannot_be_compared_is_refused() {
     assert!(refused(&["dark.png", "light.png", "--diff", "light.png"]).contains("B and --diff are the same file"));
 }
 
+/// An image, and the same with what is around it.
+#[test]
+fn parts_of_images_are_told_from_images_of_other_sizes() {
+    let place = Place::new();
+    let render = ["render", "room.toml", "--size", "32x24", "--quality", "draft", "-o"];
+    place.good(&[&render[..], &["whole.exr"]].concat());
+    place.good(&[&render[..], &["around.exr", "--crop=-4,-3,40,30"]].concat());
+    let message = place.refused(&["compare", "around.exr", "whole.exr"]);
+    let expected = "cannot compare the 40x30 pixels from column -4, row -3 on of an image of 32x24 with a whole image of 32x24 pixels: render both \
+                    with the same crop, or both without";
+    assert!(message.contains(expected) && message.contains("(lightmesh render --crop X,Y,W,H)"), "{message}");
+}
+
+#[test]
+fn a_difference_is_asked_for_by_its_own_flag() {
+    let place = pictures();
+    for flags in [&["-o", "d.png"][..], &["--output", "d.png"], &["-od.png"]] {
+        let done = place.run(&[&["compare", "dark.png", "light.png"], flags].concat());
+        assert!(done.code == Some(2) && done.stderr.contains("'--diff'"), "{done:?}");
+        assert!(!place.path("d.png").exists());
+    }
+    assert!(!place.good(&["compare", "--help"]).stdout.contains("--output"));
+}
+
 /// Two EXR files of light that a screen shows white.
 #[test]
 fn light_in_exr_files_has_no_limit() {

@@ -223,7 +223,10 @@ fn scenes_that_do_not_move_have_no_film_of_their_own() {
         assert!(message.contains("nothing in the scene moves; add --turntable N"), "{message}");
     }
     let message = place.refused(&["render", "balls.toml", "-o", "f.png", "--overwrite"]);
-    assert!(message.contains("are for films"), "{message}");
+    let expected = "--overwrite is for films; add --turntable, --sun, --frames or --fps, or leave it out";
+    assert!(message.contains(expected), "{message}");
+    let done = place.run(&["render", "balls.toml"]);
+    assert!(done.code == Some(2) && done.stderr.contains("--output") && !done.stderr.contains("--sun"), "{done:?}");
     place.write("moving.toml", MOVING);
     let message = place.refused(&["render", "moving.toml", "-o", "f.#.png", "--frames", "20-30"]);
     assert!(message.contains("the film ends with frame 25"), "{message}");

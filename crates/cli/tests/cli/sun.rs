@@ -63,7 +63,7 @@ fn hours_need_no_film() {
     let outputs = ["--sun-hours", "h.csv", "--sun-hours", "h.exr", "--sun-hours", "h.PNG"];
     let done = place.good(&study(sun, &outputs));
     let summary = done.stderr.lines().last().unwrap();
-    assert!(summary.starts_with("hours of direct sun of 9 moments: "), "{summary}");
+    assert!(summary.starts_with("hours of direct sun, 9 moments 60 min apart: "), "{summary}");
     assert_eq!(place.files(), ["h.PNG", "h.csv", "h.exr", "room.toml", "tower.toml"]);
     let table = String::from_utf8(place.read("h.csv")).unwrap();
     let floor = table.lines().find(|line| line.starts_with("floor,")).unwrap();
@@ -103,13 +103,25 @@ fn studies_that_cannot_be_made_are_refused_at_once() {
         (day, &["-o", "d.#.png", "--sky", "uniform"], "--sun needs a clear sky"),
         (day, &["-o", "d.#.png", "--turntable", "3"], "cannot be used with"),
         (day, &["-o", "d.#.png", "--environment", "p.hdr"], "cannot be used with"),
-        (day, &[], "--output"),
+        (
+            day,
+            &[],
+            "--sun needs an output; add -o film.####.png for a frame of each STEP, --sun-hours hours.png for the hours of direct sun, or both",
+        ),
         (day, &["--sun-hours", "h.jpg"], "--sun-hours h.jpg: unknown format; use the extension exr, png or csv"),
         (day, &["--sun-hours", "none/h.csv"], "none"),
         (day, &["--sun-hours", "h.csv", "--sun-hours", "./h.csv"], "are the same file"),
         (day, &["--sun-hours", "h.png", "-o", "h.png"], "has one for each frame"),
         (day, &["--sun-hours", "h.csv", "--layers", "l.exr"], "--output"),
-        (day, &["--sun-hours", "h.csv", "--skip-existing"], "--output"),
+        (
+            day,
+            &["--sun-hours", "h.csv", "--skip-existing"],
+            "--skip-existing is for frames of a film, and hours of direct sun have none; leave it out (files of hours are replaced)",
+        ),
+        (day, &["--sun-hours", "h.csv", "--overwrite"], "--overwrite is for frames of a film"),
+        (day, &["--sun-hours", "h.csv", "--resume"], "or write frames, too (-o film.####.png)"),
+        (day, &["--sun-hours", "h.csv", "--frames", "1-2"], "--frames is for frames of a film"),
+        (day, &["--sun-hours", "h.csv", "--fps", "12"], "--fps is for frames of a film"),
         (
             "78,15,2026-12-21+01:00,00:00-24:00/1h",
             &["--sun-hours", "h.csv", "-o", "d.#.png"],
@@ -156,4 +168,39 @@ fn glass_is_told() {
     assert!(!none.stderr.contains("lets light through"), "{none:?}");
     let alone = place.run(&[&RENDER[..], &["-o", "a.png", "--glass", "open"]].concat());
     assert!(alone.code == Some(2) && alone.stderr.contains("--sun <"), "{alone:?}");
+}
+
+/// Two nodes of a file that have the same name, beside each other on the ground.
+const CHAIRS: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+    "nodes": [{"name": "chair", "mesh": 0}, {"name": "chair", "mesh": 0, "translation": [2, 0, 0]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn objects_of_one_name_have_a_row_each() {
+    let place = Place::new();
+    place.write("chairs.gltf", CHAIRS);
+    let sun = "48,0,2026-06-21Z,10:00-14:00/1h";
+    for stored in ["always", "never"] {
+        place.good(&[
+            "render",
+            "chairs.gltf",
+            "--size",
+            "64x48",
+            "--sun",
+            sun,
+            "--sun-hours",
+            "h.csv",
+            "--instances",
+            stored,
+        ]);
+        let table = String::from_utf8(place.read("h.csv")).unwrap();
+        assert_eq!(table.lines().filter(|line| line.starts_with("chair,")).count(), 2, "{stored}: {table}");
+    }
+    // Mattes know the names alone: both are in the layers, and read again.
+    place.good(&["render", "chairs.gltf", "-o", "a.png", "--size", "64x48", "--layers", "l.exr"]);
+    let layers = Frame::load(place.path("l.exr")).unwrap();
+    assert_eq!(layers.layers().unwrap().object.names, ["chair", "chair", "ground"]);
 }

@@ -4,10 +4,10 @@ use glam::Vec3;
 use lightmesh_image::{Layers, Transfer};
 use lightmesh_render::backend::{Cpu, Cuda};
 use lightmesh_render::{
-    AmbientSource, Counts, Crop, Frame, GivenPoints, Lookup, Mode, PointVisibility, PreparedScene, Settings, Step,
-    Unobserved, render_on, visibility_on,
+    AmbientSource, Counts, Crop, Frame, GivenPoints, Glass, Lookup, Mode, PointVisibility, PreparedScene, Settings,
+    Step, Unobserved, render_on, visibility_on,
 };
-use lightmesh_scene::{Bounds, Camera, Up};
+use lightmesh_scene::{Bounds, Camera, Light, Lights, Up};
 use lightmesh_testkit::{Picture, Random, runs_all, seed};
 
 use crate::pairwise;
@@ -87,6 +87,9 @@ pub(crate) fn cases<R: Target>() -> Vec<Case<R>> {
                 cases.push(case.only_if(way.0 == "lists" && aa == 3));
             }
         }
+    }
+    for subject in [&GLAZED, &GLAZED_INSTANCES] {
+        cases.push(Case::new(format!("{}::hours", subject.name), move |cuda| same_hours(cuda, subject)));
     }
     cases.extend(sweep());
     cases
@@ -199,6 +202,27 @@ fn same_shadows<R: Target>(cuda: &Cuda<R>, subject: &'static Subject, structure:
     let acceleration = &ACCELERATIONS[structure];
     let scene = PreparedScene::new(&scene, acceleration, &Unobserved).unwrap();
     same_frame(cuda, &scene, settings.with_transparent(true).with_acceleration(acceleration.clone()));
+}
+
+/// The suns of hours of direct sun: one is a disc, one all that it passes over. Where glass is open or closed, shadow rays meet other triangles than
+/// where it is tinted, and nothing is transmitted.
+fn same_hours<R: Target>(cuda: &Cuda<R>, subject: &'static Subject) {
+    let scene = subject.prepared(0);
+    let bounds = scene.geometry.bounds;
+    let way = Vec3::new(0.3, 0.9, 0.2).normalize();
+    let (u, v) = way.any_orthonormal_pair();
+    let distance = 2048.0 * 0.5 * bounds.diagonal();
+    let sweep = Light::rectangle(bounds.center() + distance * way, 0.03 * distance * u, 0.004 * distance * v).unwrap();
+    let disc = Light::directional(-way).unwrap().with_angle(0.0093);
+    let dark = [disc, sweep].map(|light| light.with_intensity(Vec3::ZERO));
+    let lit = scene.with_lights(dark.into_iter().collect::<Lights>().with_ambient(Vec3::ZERO));
+    let settings = settings(subject, WAYS[0]).with_bounces(0).with_samples(16).with_size(SMALL);
+    let [open, tinted, closed] = [Glass::Open, Glass::Tinted, Glass::Closed].map(|glass| {
+        let [host, _] = same_frame(cuda, &lit, settings.clone().with_glass(glass));
+        let layers = host.image.layers().expect("asked for");
+        layers.visibility.iter().flatten().sum::<f32>()
+    });
+    assert!(open > tinted && tinted > closed && closed > 0.0, "{open} {tinted} {closed}");
 }
 
 pub(crate) fn same_frame<R: Target>(cuda: &Cuda<R>, scene: &PreparedScene, settings: Settings) -> [Frame; 2] {

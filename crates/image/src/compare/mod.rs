@@ -16,7 +16,7 @@ use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use crate::transfer::linear_to_srgb;
-use crate::{Frame, Transfer};
+use crate::{Frame, Transfer, Window};
 use flip::flip;
 use hdr_flip::{Exposures, hdr_flip};
 use magma::MAGMA;
@@ -65,7 +65,7 @@ pub struct LinearDifference {
 pub enum CompareError {
     /// The frames have different sizes.
     #[error(
-        "cannot compare an image of {}x{} pixels with one of {}x{}: render or scale both to the same size",
+        "cannot compare an image of {}x{} pixels with one of {}x{}: render both with the same size and crop, or scale one of them",
         first.0, first.1, second.0, second.1
     )]
     Size {
@@ -73,6 +73,15 @@ pub enum CompareError {
         first: (u32, u32),
         /// Width and height of the second frame.
         second: (u32, u32),
+    },
+    /// The frames show different parts of an image.
+    #[error(
+        "cannot compare {} with {}: render both with the same crop, or both without; scaling would not bring their pixels together",
+        part(.parts[0]), part(.parts[1])
+    )]
+    Part {
+        /// The place of each frame in its image, and its width and height.
+        parts: Box<[(Window, [u32; 2]); 2]>,
     },
     /// A frame contains NaN, for which there is no difference.
     #[error("cannot compare: the {which} image has NaN at column {x}, row {y}; render it again")]
@@ -91,16 +100,35 @@ pub enum CompareError {
 /// # Errors
 /// [`CompareError`] if the sizes differ, or a value is NaN.
 pub fn compare(reference: &Frame, test: &Frame) -> Result<Comparison, CompareError> {
-    let (width, height) = (reference.width(), reference.height());
-    if (width, height) != (test.width(), test.height()) {
-        return Err(CompareError::Size { first: (width, height), second: (test.width(), test.height()) });
-    }
+    check_sizes(reference, test)?;
     check_numbers("first", reference)?;
     check_numbers("second", test)?;
 
     let (rmse, max_difference) = display_difference(reference, test);
     let (mean_flip, difference) = flip_difference(reference, test);
     Ok(Comparison { rmse, psnr: -20.0 * rmse.log10(), max_difference, mean_flip, linear: None, difference })
+}
+
+/// Frames of which one is a part of an image, or more than it, need other advice than those of images of different sizes.
+fn check_sizes(reference: &Frame, test: &Frame) -> Result<(), CompareError> {
+    let sides = |frame: &Frame| [frame.width(), frame.height()];
+    let (first, second) = ((reference.window(), sides(reference)), (test.window(), sides(test)));
+    if first.1 == second.1 {
+        return Ok(());
+    }
+    if first.0.whole == second.0.whole {
+        return Err(CompareError::Part { parts: Box::new([first, second]) });
+    }
+    Err(CompareError::Size { first: first.1.into(), second: second.1.into() })
+}
+
+/// A frame as a part of its image, for messages.
+fn part((Window { first, whole }, [width, height]): (Window, [u32; 2])) -> String {
+    let [x, y] = first;
+    if (first, whole) == ([0, 0], [width, height]) {
+        return format!("a whole image of {width}x{height} pixels");
+    }
+    format!("the {width}x{height} pixels from column {x}, row {y} on of an image of {}x{}", whole[0], whole[1])
 }
 
 /// Compares as [`compare`] does, and linear values in addition: for files that store light, such as exr and hdr

@@ -6,6 +6,7 @@ use std::io::Cursor;
 use ::exr::compression::Compression;
 use ::exr::image::FlatSamples;
 use ::exr::image::read::read as reader;
+use ::exr::math::Vec2;
 use ::exr::meta::attribute::AttributeValue;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{ReadChannels, ReadLayers};
@@ -25,16 +26,18 @@ const MAX_BYTES: u64 = 1 << 36;
 const MAX_EXPANSION: u64 = 1376;
 
 /// Reads colours from the channels `R G B`, from `Y` as grey, from those of a layer, or from the only channel as grey; alpha if there is `A`, and the
-/// layers if all of their channels are present. The image is the file's data window.
+/// layers if all of their channels are present. The image is the file's data window, and knows its place in the display window.
 pub fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let chunks = ::exr::block::read(Cursor::new(bytes), false).map_err(malformed)?;
     check_headers(chunks.headers(), bytes.len() as u64)?;
     let flat = chunks.headers().iter().all(|header| !header.deep);
     let channels = reader().no_deep_data().largest_resolution_level().all_channels();
-    let layers = if flat {
-        channels.all_layers().all_attributes().from_chunks(chunks).map_err(malformed)?.layer_data.into_vec()
+    let (layers, shown) = if flat {
+        let image = channels.all_layers().all_attributes().from_chunks(chunks).map_err(malformed)?;
+        (image.layer_data.into_vec(), image.attributes.display_window)
     } else {
-        vec![channels.first_valid_layer().all_attributes().from_chunks(chunks).map_err(malformed)?.layer_data]
+        let image = channels.first_valid_layer().all_attributes().from_chunks(chunks).map_err(malformed)?;
+        (vec![image.layer_data], image.attributes.display_window)
     };
 
     let first = layers.first().ok_or_else(|| malformed("it has no parts"))?;
@@ -52,6 +55,9 @@ pub fn read(bytes: &[u8]) -> Result<Frame, DecodeError> {
         }
     }
     let frame = Frame::new(size.0 as u32, size.1 as u32, planes.color()?).map_err(malformed)?;
+    let place = |axis: fn(Vec2<i32>) -> i32| axis(position).saturating_sub(axis(shown.position));
+    let whole = [shown.size.0, shown.size.1].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+    let frame = frame.with_window([place(|at| at.0), place(|at| at.1)], whole);
     let frame = match planes.alpha() {
         Some(alpha) => frame.with_alpha(alpha).map_err(malformed)?,
         None => frame,

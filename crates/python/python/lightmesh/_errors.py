@@ -59,9 +59,13 @@ class Cancelled(LightmeshError):
     """The render was cancelled."""
 
 
-class SceneWarning(UserWarning):
+class LightmeshWarning(UserWarning):
+    """Everything that may not be as it should be: settings that do nothing, files whose names say another format."""
+
+
+class SceneWarning(LightmeshWarning):
     """What a loader corrected, ignored or guessed."""
 
 
-class MeshFileWarning(UserWarning):
+class MeshFileWarning(LightmeshWarning):
     """Why nothing of a file of light points was used."""

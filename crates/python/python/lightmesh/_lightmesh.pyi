@@ -579,6 +579,9 @@ class Film:
 
     def __iter__(self) -> Self: ...
     def __next__(self) -> Frame: ...
+    @property
+    def notes(self) -> list[str]:
+        """What was chosen for all frames, as sentences."""
     def __len__(self) -> int:
         """How many frames are left."""
 
@@ -683,9 +686,9 @@ class Renderer:
         cancel: Cancel | None = None,
         **settings: Unpack[ImageSettings],
     ) -> NDArray[np.float32]:
-        """The visible share of each light, (N, L), at surface `points` (N, 3) of `scene` with these `normals` (N, 3), world coordinates: to bake vertex
-        colours and lightmaps. `lights`, one or a sequence, stand in for the scene's. What lies behind a surface is dark. `progress` is called now and
-        then, and `cancel` stops it."""
+        """The visible share of each light, (N, L), at surface `points` (N, 3) of `scene` with these `normals`, (N, 3) or one for all, world coordinates: to
+        bake vertex colours and lightmaps. `lights`, one or a sequence, stand in for the scene's, of which a scene may have none: L is 0 then, with a
+        `LightmeshWarning`, for no studio is added. What lies behind a surface is dark. `progress` is called now and then, and `cancel` stops it."""
 
 def visibility(
     points: ArrayLike,

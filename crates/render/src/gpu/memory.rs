@@ -12,6 +12,7 @@ use lightmesh_layout::mesh::Bundle;
 use super::device::Cuda;
 use crate::error::RenderError;
 use crate::plan::Plan;
+use crate::settings::SettingSet;
 use crate::stages::irradiance_cache::cuda;
 
 /// Expected number of surface points per bundle: a cell's points fill warps of 32, and cells are cut at the borders of tiles.
@@ -35,6 +36,7 @@ impl<R: Runtime> Cuda<R> {
                 buffer: "one row of the image",
                 needed: row * (plan.margin_rows() + 1),
                 free: Some(free),
+                helps: SettingSet::default(),
             }),
             rows => Ok((rows - plan.margin_rows()).min(u64::from(plan.size[1])) as u32),
         }

@@ -21,6 +21,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, Cpu, Cuda};
 use crate::cache::{Cache, MeshCache, MeshFileError};
+use crate::data::visibility::Visibility;
 use crate::device::{Choice, Chosen, Device};
 use crate::error::RenderError;
 use crate::gpu;
@@ -28,6 +29,7 @@ use crate::observer::{Observer, Unobserved};
 use crate::passes::Baking;
 use crate::prepared::{Preparations, PreparedScene};
 use crate::probes::{GivenPoints, PointVisibility};
+use crate::render_context::RenderContext;
 use crate::settings::{Acceleration, Settings};
 use crate::shadow::rows::KnownRows;
 pub use frame::Frame;
@@ -266,14 +268,25 @@ fn points_on<B: Backend>(
     backend.check_structure(scene.geometry.acceleration())?;
     let resolved = Resolved::at_points(points, settings, observer)?;
     let context = resolved.context(observer).with_rows(rows);
-    let runner = StageRunner::new(backend, &context, None);
-    let on_device = runner.or_evict(|backend| backend.scene(&context, scene, resolved.plan.memory_limit))?;
-    let Resolved { technique, plan, .. } = &resolved;
-    let (visibility, rows) = Baking { runner, scene: &on_device, technique, plan }.bake(points)?;
+    let baked = bake(backend, &context, &resolved, points);
+    let (visibility, rows) = baked.map_err(|error| resolved.advise(error))?;
     context.work.finish(observer);
     let stats =
         report::stats(&context, &resolved, report::DeviceFacts::of(backend), rows, start.elapsed().as_secs_f64());
     Ok(PointVisibility { visibility, lights: scene.scene.lights.len(), stats })
+}
+
+/// What points see of each light, and how many rows of points were looked at at once.
+fn bake<B: Backend>(
+    backend: &B,
+    context: &RenderContext,
+    resolved: &Resolved,
+    points: &GivenPoints,
+) -> Result<(Visibility, u32), RenderError> {
+    let Resolved { scene, technique, plan, .. } = resolved;
+    let runner = StageRunner::new(backend, context, None);
+    let on_device = runner.or_evict(|backend| backend.scene(context, scene, plan.memory_limit))?;
+    Baking { runner, scene: &on_device, technique, plan }.bake(points)
 }
 
 /// Renders one image of a prepared scene on the caller's own backend, on the caller's threads.

@@ -45,7 +45,8 @@ pub(super) fn picture_on<B: Backend>(
 
     let resolved = admit(backend, cache.as_deref_mut(), scene, settings, observer)?;
     let context = resolved.context(observer).with_rows(rows);
-    let (picture, rows_at_once) = render(backend, cache, &context, &resolved)?;
+    let rendered = render(backend, cache, &context, &resolved);
+    let (picture, rows_at_once) = rendered.map_err(|error| resolved.advise(error))?;
     if picture.finished == resolved.plan.size[1] {
         context.work.finish(observer);
     }
@@ -70,16 +71,15 @@ fn admit<'a, B: Backend>(
 ) -> Result<Resolved<'a>, RenderError> {
     backend.check_structure(scene.geometry.acceleration())?;
     let mut resolved = Resolved::new(scene, settings, observer)?;
-    let plan = &mut resolved.plan;
-    plan.kept = cache.as_ref().map_or(0, |cache| cache.memory());
-    if let Err(short) = backend.check_host_memory(plan) {
+    resolved.plan.kept = cache.as_ref().map_or(0, |cache| cache.memory());
+    if let Err(short) = backend.check_host_memory(&resolved.plan) {
         // What is kept gives way to what is needed.
         match cache {
             Some(cache) if !cache.is_empty() => cache.clear(),
-            _ => return Err(short),
+            _ => return Err(resolved.advise(short)),
         }
-        plan.left = Budget::new(plan.memory_limit).left();
-        backend.check_host_memory(plan)?;
+        resolved.plan.left = Budget::new(resolved.plan.memory_limit).left();
+        backend.check_host_memory(&resolved.plan).map_err(|short| resolved.advise(short))?;
     }
     Ok(resolved)
 }

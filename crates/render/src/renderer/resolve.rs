@@ -43,6 +43,8 @@ pub(super) struct Resolved<'a> {
     pub(super) sampling: Sampling,
     /// Pixels, or points given by the caller.
     pub(super) pixels: u64,
+    /// Whether it is of an image.
+    is_of_image: bool,
 }
 
 impl<'a> Resolved<'a> {
@@ -79,6 +81,7 @@ impl<'a> Resolved<'a> {
             ..resolved.plan
         };
         resolved.pixels = points.len() as u64;
+        resolved.is_of_image = false;
         Ok(resolved)
     }
 
@@ -135,7 +138,22 @@ impl<'a> Resolved<'a> {
         };
         let sampling = Sampling { samples, seed: settings.seed, spread: technique.spreads_points() };
         let pixels = plan.pixels();
-        Ok(Resolved { scene, settings, camera, view: whole.with_window(window), technique, plan, sampling, pixels })
+        let view = whole.with_window(window);
+        Ok(Resolved { scene, settings, camera, view, technique, plan, sampling, pixels, is_of_image: true })
+    }
+
+    /// An error with the settings by which this work takes less memory, if it is of memory.
+    pub(super) fn advise(&self, error: RenderError) -> RenderError {
+        let Resolved { settings, plan, .. } = self;
+        let helps = [
+            (Setting::Size, self.is_of_image),
+            (Setting::Layers, self.is_of_image && settings.layers),
+            (Setting::Aa, plan.antialiasing.is_some()),
+            (Setting::Step, settings.has_light_points()),
+            (Setting::Radius, settings.has_light_points()),
+            (Setting::AmbientLight, plan.gathering.is_some()),
+        ];
+        error.helped_by(helps.into_iter().filter_map(|(setting, helps)| helps.then_some(setting)).collect())
     }
 }
 

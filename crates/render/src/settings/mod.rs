@@ -12,7 +12,7 @@ pub use choices::{
     AmbientSource, Filter, Glass, Lookup, Mode, Quality, ShadowTests, Sharing, ShortTests, Step, UnknownStep,
 };
 pub use crop::{Crop, UnknownCrop};
-pub use setting::Setting;
+pub use setting::{Setting, SettingSet};
 
 /// All settings of an image, apart from the scene. Fields can be set, or methods chained; more may be added.
 ///

@@ -27,6 +27,8 @@ pub enum Setting {
     Aa,
     /// [`Settings::samples`](crate::Settings::samples).
     Samples,
+    /// [`Settings::layers`](crate::Settings::layers).
+    Layers,
     /// [`Settings::acceleration`](crate::Settings::acceleration).
     Acceleration,
     /// [`Settings::memory_limit`](crate::Settings::memory_limit).
@@ -50,6 +52,7 @@ impl Setting {
         Setting::AmbientLight,
         Setting::Aa,
         Setting::Samples,
+        Setting::Layers,
         Setting::Acceleration,
         Setting::MemoryLimit,
         Setting::Threads,
@@ -69,11 +72,44 @@ impl Setting {
             Setting::AmbientLight => "ambient_light",
             Setting::Aa => "aa",
             Setting::Samples => "samples",
+            Setting::Layers => "layers",
             Setting::Acceleration => "acceleration",
             Setting::MemoryLimit => "memory_limit",
             Setting::Threads => "threads",
             Setting::Device => "device",
         }
+    }
+
+    /// What to choose of it so that an image takes less memory, if it decides how much that is.
+    pub(crate) fn that_takes_less(self) -> Option<&'static str> {
+        match self {
+            Setting::Size => Some("a smaller image"),
+            Setting::Layers => Some("no layers"),
+            Setting::Aa => Some("fewer samples of a pixel"),
+            Setting::Step => Some("a larger step"),
+            Setting::Radius => Some("a smaller radius"),
+            Setting::AmbientLight => Some("constant ambient light"),
+            _ => None,
+        }
+    }
+}
+
+/// Some settings, in the order of [`Setting::ALL`]. Small, since errors have it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SettingSet(u16);
+
+const _: () = assert!(Setting::ALL.len() <= u16::BITS as usize, "each setting has a bit");
+
+impl SettingSet {
+    /// Those that are in it.
+    pub fn iter(self) -> impl Iterator<Item = Setting> {
+        Setting::ALL.iter().copied().filter(move |setting| self.0 >> *setting as u16 & 1 == 1)
+    }
+}
+
+impl FromIterator<Setting> for SettingSet {
+    fn from_iter<I: IntoIterator<Item = Setting>>(settings: I) -> SettingSet {
+        SettingSet(settings.into_iter().fold(0, |bits, setting| bits | 1 << setting as u16))
     }
 }
 

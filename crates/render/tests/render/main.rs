@@ -22,6 +22,7 @@ mod light_groups;
 mod lists;
 mod lives;
 mod mattes;
+mod memory_advice;
 mod mirrors;
 mod near_lights;
 mod normal_maps;

@@ -47,6 +47,13 @@ pub enum RequestError {
         /// The other.
         needed: Name,
     },
+    /// A setting of light points, where there are none.
+    NoLightPoints {
+        /// The setting.
+        setting: Name,
+        /// What has chosen shadows without them, and its value.
+        chosen: (Name, &'static str),
+    },
     /// A setting is needed and not given.
     Missing {
         /// The setting.
@@ -89,8 +96,17 @@ pub enum RequestError {
     },
     /// Nothing in the scene moves.
     NotAnimated,
-    /// What is said of frames where there are none.
+    /// A film in which nothing moves.
     NoFilm,
+    /// What is said of frames where there are none.
+    OfFilm {
+        /// The setting.
+        setting: Name,
+        /// Whether there are hours of direct sun.
+        has_hours: bool,
+    },
+    /// A day of which nothing is kept.
+    NothingOfSun,
     /// Frames that were rendered before.
     FrameExists {
         /// The first of their images.
@@ -137,6 +153,15 @@ impl Told for RequestError {
                 let (setting, needed) = (of(setting), of(needed));
                 format!("{setting} needs {needed}; give it, too, or leave {setting} out")
             }
+            RequestError::NoLightPoints { setting, chosen: (name, value) } => {
+                let without = if *name == "mode" { format!(" without {}", of(name)) } else { String::new() };
+                format!(
+                    "{} is of light points, which {} does not have; leave it out, or choose {}{without}",
+                    of(setting),
+                    words.with(name, value),
+                    words.with("lookup", "half-ball")
+                )
+            }
             RequestError::Missing { setting } => format!("{} is needed; give it", of(setting)),
             RequestError::Save(error) => error.to_string(),
             RequestError::Output(error) => error.told(words),
@@ -178,14 +203,20 @@ impl Told for RequestError {
                 of("frames"),
                 of("fps")
             ),
-            RequestError::NoFilm => format!(
-                "{}, {} and {} are for films; add {}, {} or {}, or remove them",
-                of("resume"),
-                of("skip_existing"),
-                of("overwrite"),
-                of("frames"),
-                of("fps"),
-                of("turntable")
+            RequestError::NoFilm => format!("nothing moves, so there is no film; add {}", what_moves(words)),
+            RequestError::OfFilm { setting, has_hours: true } => format!(
+                "{} is for frames of a film, and hours of direct sun have none; leave it out (files of hours are replaced), or write frames, too ({})",
+                of(setting),
+                words.with("output", "film.####.png")
+            ),
+            RequestError::OfFilm { setting, has_hours: false } => {
+                format!("{} is for films; add {}, or leave it out", of(setting), what_moves(words))
+            }
+            RequestError::NothingOfSun => format!(
+                "{} needs an output; add {} for a frame of each STEP, {} for the hours of direct sun, or both",
+                of("sun"),
+                words.with("output", "film.####.png"),
+                words.with("sun_hours", "hours.png")
             ),
             RequestError::FrameExists { first, count } => format!(
                 "{} exists{}; add {} to keep such frames, or {} to replace them",
@@ -228,6 +259,12 @@ fn shown(value: &Value) -> String {
         Value::Text(text) => format!("`{text}`"),
         Value::List(items) => format!("[{}]", items.iter().map(shown).collect::<Vec<_>>().join(", ")),
     }
+}
+
+/// What makes a film.
+fn what_moves(words: Words) -> String {
+    let [turntable, sun, frames, fps] = ["turntable", "sun", "frames", "fps"].map(|name| words.of(name));
+    format!("{turntable}, {sun}, {frames} or {fps}")
 }
 
 /// Further files besides the first.

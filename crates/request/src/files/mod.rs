@@ -10,7 +10,7 @@ pub use destination::{Destination, check_one_on_stdout, is_standard};
 pub use outputs::{Outputs, input, json, publish, ready};
 
 pub use crate::error::OutputError;
-pub use picture::PictureFiles;
+pub use picture::{PictureFiles, misnamed};
 pub(crate) use picture::{hours_of_sun, save_options};
 
 use crate::words::Name;

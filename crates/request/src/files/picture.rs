@@ -99,16 +99,7 @@ impl PictureFiles {
     pub(crate) fn misnamed(&self, words: Words) -> Option<String> {
         let path = self.picture_file()?;
         let (written, named) = (self.options.format?, Format::from_path(path)?);
-        (written != named).then(|| {
-            format!(
-                "{} {} is a {written} file, as {} says, but its extension is that of {named} files; name it {}, or leave out {}",
-                words.of(OUTPUT),
-                path.display(),
-                words.of("format"),
-                path.with_extension(written.name()).display(),
-                words.of("format")
-            )
-        })
+        misnamed((OUTPUT, path), (written.name(), named.name()), words)
     }
 
     /// The file of the image, if it goes to one.
@@ -120,6 +111,19 @@ impl PictureFiles {
     pub fn picture_name(&self) -> String {
         self.picture.as_ref().map_or_else(String::new, ToString::to_string)
     }
+}
+
+/// What to say if a file is `written` in another format than its extension has `named`.
+pub fn misnamed((output, path): (Name, &Path), (written, named): (&str, &str), words: Words) -> Option<String> {
+    let (output, format, path_as_written) = (words.of(output), words.of("format"), path.with_extension(written));
+    let article = if written.starts_with('e') { "an" } else { "a" };
+    (written != named).then(|| {
+        format!(
+            "{output} {} is {article} {written} file, as {format} says, but its extension is that of {named} files; name it {}, or leave out {format}",
+            path.display(),
+            path_as_written.display(),
+        )
+    })
 }
 
 /// Files of `--sun-hours`, which is not one of an image.

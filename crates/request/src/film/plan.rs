@@ -74,8 +74,9 @@ impl Film {
     /// The film that is asked for, if it is one. Fails if what is known of it without the scene cannot be rendered.
     pub(crate) fn new(order: &Order, sun: Option<&SunStudy>) -> Result<Option<Film>, RequestError> {
         let Some(motion) = Motion::of(order, sun) else {
-            let is_film = order.request.skip_existing || order.request.overwrite || order.request.resume;
-            return if is_film { Err(RequestError::NoFilm) } else { Ok(None) };
+            let has_hours = !order.files.sun_hours.is_empty();
+            let of_film = order.request.of_frames().next();
+            return of_film.map_or(Ok(None), |setting| Err(RequestError::OfFilm { setting, has_hours }));
         };
         let movie = Container::of_film(order)?;
         let record = if order.request.resume { manifest::known(order)? } else { None };

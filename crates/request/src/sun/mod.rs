@@ -19,7 +19,7 @@ pub(crate) fn write_hours(
     prepared: &PreparedScene,
     context: Context,
 ) -> Result<Option<String>, Error> {
-    if let Some(note) = study.left_out(context.host.words()) {
+    if let Some(note) = study.left_out(context.plan.film.is_some(), context.host.words()) {
         context.host.note(&note);
     }
     if study.outputs.is_empty() {

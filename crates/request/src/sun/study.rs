@@ -80,6 +80,11 @@ impl HoursFormat {
     /// All of them.
     pub const ALL: &'static [HoursFormat] = &[HoursFormat::Exr, HoursFormat::Png, HoursFormat::Csv];
 
+    /// By the extension of a file; `None` if it is that of another.
+    pub fn from_path(path: &Path) -> Option<HoursFormat> {
+        path.extension()?.to_str()?.to_ascii_lowercase().parse().ok()
+    }
+
     /// Its name, which is the extension of its files.
     pub fn name(self) -> &'static str {
         match self {
@@ -129,6 +134,18 @@ impl SunStudy {
         self.moments.iter().map(|moment| moment.hours).sum()
     }
 
+    /// What the hours are the sum of, for messages: with a step moments, without one all of the time, in parts.
+    pub(crate) fn suns(&self) -> String {
+        let (count, spec) = (self.moments.len(), &self.spec);
+        match spec.step {
+            Some(step) => format!("{count} moments {step} min apart"),
+            None => {
+                let (from, to) = (clock(spec.from), clock(spec.to));
+                format!("all the time from {from} to {to} by {count} parts of the sun's way")
+            }
+        }
+    }
+
     /// Decimals of hours that mean something: multiples of the step can be told apart; without one, half a minute can.
     pub(crate) fn decimals(&self) -> usize {
         if self.spec.step.is_some_and(|step| step.is_multiple_of(6)) { 1 } else { 2 }
@@ -151,9 +168,17 @@ impl SunStudy {
         })
     }
 
-    /// Which moments have no frame, for a note.
-    pub fn left_out(&self, words: Words) -> Option<String> {
+    /// When there is no sun, for a note: which moments have no frame, or of hours alone without a step, how much of the time.
+    pub fn left_out(&self, has_frames: bool, words: Words) -> Option<String> {
         let (first, last) = (self.dark.first()?, self.dark.last()?);
+        if self.spec.step.is_none() && !has_frames {
+            let all = f64::from(self.spec.to - self.spec.from) / 60.0;
+            let dark = all - self.hours();
+            return Some(format!(
+                "{}: {dark:.1} of {all:.1} hours have no direct sun: it is below the horizon then, and twilight is not modelled",
+                words.of("sun")
+            ));
+        }
         let count = self.dark.len();
         let moments = if count == 1 { "moment is" } else { "moments are" };
         Some(format!(
@@ -167,9 +192,8 @@ impl SunStudy {
 
 /// Checks that a file for hours can be written.
 pub(super) fn hours_file(path: &Path, format: Option<HoursFormat>) -> Result<HoursFile, RequestError> {
-    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    let by_extension = || extension.to_ascii_lowercase().parse::<HoursFormat>().ok();
-    let format = format.or_else(by_extension).ok_or_else(|| RequestError::HoursFormat { path: path.to_owned() })?;
+    let format = format.or_else(|| HoursFormat::from_path(path));
+    let format = format.ok_or_else(|| RequestError::HoursFormat { path: path.to_owned() })?;
     check_writable(path).map_err(OutputError::from)?;
     Ok(HoursFile { path: path.to_owned(), format })
 }

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::model::instances::MAX_INSTANCED;
 use crate::model::transforms::{mirrors, normal_placement};
-use crate::{Affine, Geometry, Instances, Material, Mesh, Objects, Position, Scene, UNNAMED};
+use crate::{Affine, Geometry, Instances, Material, Mesh, ObjectKey, Objects, Position, Scene, UNNAMED};
 
 /// Collects placed meshes and their materials; [`SceneBuilder::finish_scene`] turns them into a scene in a local frame.
 ///
@@ -62,7 +62,7 @@ struct PlacedShape {
     /// Its triangles in the builder of shapes.
     triangles: Range<usize>,
     transform: DMat4,
-    object: Option<String>,
+    object: Option<ObjectKey>,
 }
 
 impl SceneBuilder {
@@ -103,13 +103,14 @@ impl SceneBuilder {
     }
 
     /// The objects of some triangles, each with a run of them; none if nothing was named.
-    pub(crate) fn objects_of(&self, triangles: &Range<usize>) -> Vec<(Range<usize>, String)> {
+    pub(crate) fn objects_of(&self, triangles: &Range<usize>) -> Vec<(Range<usize>, ObjectKey)> {
         if self.objects.runs().0.is_empty() {
             return Vec::new();
         }
-        let runs = self.objects.ranges(triangles.end as u32).map(|(run, object)| {
-            (triangles.start.max(run.start as usize)..run.end as usize, self.objects.name(object).to_owned())
-        });
+        let runs = self
+            .objects
+            .ranges(triangles.end as u32)
+            .map(|(run, object)| (triangles.start.max(run.start as usize)..run.end as usize, self.objects.key(object)));
         runs.filter(|(run, _)| !run.is_empty()).collect()
     }
 
@@ -124,18 +125,19 @@ impl SceneBuilder {
     }
 
     /// Places a shape, as the object `object`. Returns whether it can be placed so; else nothing has changed.
-    pub(crate) fn place(&mut self, triangles: Range<usize>, transform: &DMat4, object: Option<&str>) -> bool {
+    pub(crate) fn place(&mut self, triangles: Range<usize>, transform: &DMat4, object: Option<&ObjectKey>) -> bool {
         if !Affine::holds(transform) || self.shapes.triangles + triangles.len() >= MAX_INSTANCED {
             return false;
         }
         self.shapes.triangles += triangles.len();
-        self.shapes.placed.push(PlacedShape { triangles, transform: *transform, object: object.map(str::to_owned) });
+        self.shapes.placed.push(PlacedShape { triangles, transform: *transform, object: object.cloned() });
         true
     }
 
-    /// Triangles that are added from now on belong to the object `name`. Those before the first call are [`UNNAMED`](crate::UNNAMED).
-    pub fn begin_object(&mut self, name: &str) {
-        self.objects.begin(self.triangles.len(), name);
+    /// Triangles that are added from now on belong to this object, for example one of a name. Those before the first call are
+    /// [`UNNAMED`](crate::UNNAMED).
+    pub fn begin_object(&mut self, object: impl Into<ObjectKey>) {
+        self.objects.begin(self.triangles.len(), object);
     }
 
     /// Triangles that are added from now on belong to the objects of another mesh; `place` says where each of its triangles is among them.
@@ -197,9 +199,10 @@ impl SceneBuilder {
             self.reverse(first + count..first + 2 * count);
         }
         self.exchange_shapes(&mut own);
+        let object = ObjectKey::from(object);
         for place in places {
             let first = first + if mirrors(place) { count } else { 0 };
-            self.place(first..first + count, place, Some(object));
+            self.place(first..first + count, place, Some(&object));
         }
         Ok(())
     }
@@ -376,7 +379,8 @@ fn add_shapes(mesh: &mut Mesh, mut shapes: SceneBuilder, placed: &[PlacedShape],
     let (to_shapes, to_local) = (DMat4::from_translation(center), DMat4::from_translation(-origin));
     for PlacedShape { triangles, transform, object } in placed {
         let range = first_triangle + triangles.start as u32..first_triangle + triangles.end as u32;
-        mesh.place(range, &(to_local * *transform * to_shapes), object.as_deref().unwrap_or(UNNAMED));
+        let object = object.clone().unwrap_or_else(|| UNNAMED.into());
+        mesh.place(range, &(to_local * *transform * to_shapes), object);
     }
     mesh.find_instance_bounds();
 }

@@ -71,7 +71,7 @@ impl Mesh {
         append(&mut self.uvs, &from.uvs, vertices);
         append(&mut self.colors, &from.colors, vertices);
         append(&mut self.opacities, &from.opacities, vertices);
-        self.objects.begin(self.triangles.len(), from.objects.name(instance.object));
+        self.objects.begin(self.triangles.len(), from.objects.key(instance.object));
         let stored = instance.triangles.start as usize..instance.triangles.end as usize;
         let place = |vertex: u32| first + vertices.partition_point(|&other| other < vertex) as u32;
         self.triangles.extend(from.triangles[stored.clone()].iter().map(|triangle| triangle.map(place)));

@@ -6,7 +6,7 @@ use glam::{DMat4, Vec2, Vec3};
 
 use super::geometry_check::{check_affine, check_instances, check_room};
 use crate::model::instances::{Affine, MAX_INSTANCED};
-use crate::{FIRST_INSTANCED, GeometryError, Mesh, UNNAMED};
+use crate::{FIRST_INSTANCED, GeometryError, Mesh, ObjectKey, UNNAMED};
 
 impl Mesh {
     /// Adds a shape that is stored once for several places, each of them an object with this name. `places` take the shape's coordinates to the
@@ -61,10 +61,12 @@ impl Mesh {
     }
 
     /// Places the stored triangles of a shape as the object `object`, see [`Instances::place`].
-    pub(crate) fn place(&mut self, triangles: Range<u32>, map: &DMat4, object: &str) {
+    pub(crate) fn place(&mut self, triangles: Range<u32>, map: &DMat4, object: impl Into<ObjectKey>) {
+        let object = object.into();
         if self.objects.runs().0.is_empty() {
             // What nobody named has the first number.
-            self.objects.begin(0, if self.instances.shapes.start == 0 { object } else { UNNAMED });
+            let first = if self.instances.shapes.start == 0 { object.clone() } else { UNNAMED.into() };
+            self.objects.begin(0, first);
         }
         let object = self.objects.number(object);
         self.instances.place(triangles, map, object);

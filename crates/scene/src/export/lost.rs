@@ -36,7 +36,7 @@ pub(super) fn to_others(scene: &Scene) -> Vec<String> {
             "the same at any distance",
             "with inverse-square falloff, in candela that give the same light at the middle of the scene",
         ),
-        (light(is_surface), "light", "shining to one side of a surface", "as light from a point to all sides"),
+        (light(is_surface), "light", "shining to one side of a surface", "like a spot to that side, with hard shadows"),
         (light(has_other_size), "light", "with a size", "as light from a point, with hard shadows"),
         (light(|it| it.visible), "light", "that cameras see", "without a surface"),
         (camera, "camera", "with a shift", "without it"),

@@ -9,8 +9,54 @@ use serde::{Deserialize, Serialize};
 /// The object of triangles that nobody named.
 pub const UNNAMED: &str = "unnamed";
 
-/// The objects of a mesh by name. Triangles that follow each other mostly belong to one object: runs of them are stored. Objects of the same
-/// name are one.
+/// What tells an object from all others: its name, and of those that may share one, such as nodes of a file, a number.
+///
+/// ```
+/// use lightmesh_scene::ObjectKey;
+///
+/// let chairs = [1, 2].map(|number| ObjectKey::numbered("chair", number));
+/// assert!(chairs[0] != chairs[1] && chairs[0].name() == chairs[1].name());
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct ObjectKey {
+    name: Arc<str>,
+    /// 0: it is known by its name alone.
+    number: u32,
+}
+
+impl ObjectKey {
+    /// One of the objects that may share this name, by its number among all of these, from 1 on.
+    pub fn numbered(name: &str, number: u32) -> ObjectKey {
+        ObjectKey { number, ..name.into() }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+/// The object that is known by its name alone; an empty one is [`UNNAMED`].
+impl From<&str> for ObjectKey {
+    fn from(name: &str) -> ObjectKey {
+        ObjectKey { name: if name.is_empty() { UNNAMED } else { name }.into(), number: 0 }
+    }
+}
+
+impl From<&ObjectKey> for ObjectKey {
+    fn from(key: &ObjectKey) -> ObjectKey {
+        key.clone()
+    }
+}
+
+impl From<String> for ObjectKey {
+    fn from(name: String) -> ObjectKey {
+        name.as_str().into()
+    }
+}
+
+/// The objects of a mesh. Triangles that follow each other mostly belong to one object: runs of them are stored. Objects that are begun by the same
+/// name are one; those with [keys](ObjectKey) of their own may share a name.
 ///
 /// ```
 /// use lightmesh_scene::Objects;
@@ -22,8 +68,8 @@ pub const UNNAMED: &str = "unnamed";
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Objects {
-    names: Vec<Arc<str>>,
-    numbers: HashMap<Arc<str>, u32>,
+    keys: Vec<ObjectKey>,
+    numbers: HashMap<ObjectKey, u32>,
     /// The first triangle of each run, ascending; that of the first run is 0.
     starts: Vec<u32>,
     /// The object of each run.
@@ -31,16 +77,15 @@ pub struct Objects {
 }
 
 impl Objects {
-    /// Triangles from number `first` on belong to the object `name`; an empty one is [`UNNAMED`]. Runs begin in the order of triangles: a
-    /// `first` below the last one counts as that.
-    pub fn begin(&mut self, first: usize, name: &str) {
-        let name = if name.is_empty() { UNNAMED } else { name };
+    /// Triangles from number `first` on belong to this object, for example one of a name. Runs begin in the order of triangles: a `first` below the
+    /// last one counts as that.
+    pub fn begin(&mut self, first: usize, object: impl Into<ObjectKey>) {
         // Triangles are numbered in 32 bits.
         let first = u32::try_from(first).unwrap_or(u32::MAX).max(self.starts.last().copied().unwrap_or(0));
         if self.starts.is_empty() && first > 0 {
             self.begin(0, UNNAMED);
         }
-        let object = self.number(name);
+        let object = self.number(object);
         if self.starts.last() == Some(&first) {
             self.starts.pop();
             self.objects.pop();
@@ -51,14 +96,14 @@ impl Objects {
         }
     }
 
-    /// The number of an object; a new one if the name is new.
-    pub(crate) fn number(&mut self, name: &str) -> u32 {
-        if let Some(&known) = self.numbers.get(name) {
+    /// The number of an object; a new one if it is new.
+    pub(crate) fn number(&mut self, object: impl Into<ObjectKey>) -> u32 {
+        let (key, added) = (object.into(), self.keys.len() as u32);
+        if let Some(&known) = self.numbers.get(&key) {
             return known;
         }
-        let (name, added) = (Arc::from(name), self.names.len() as u32);
-        self.names.push(Arc::clone(&name));
-        self.numbers.insert(name, added);
+        self.keys.push(key.clone());
+        self.numbers.insert(key, added);
         added
     }
 
@@ -71,15 +116,20 @@ impl Objects {
 
     /// Number of objects, at least one: all triangles belong to some.
     pub fn count(&self) -> usize {
-        self.names.len().max(1)
+        self.keys.len().max(1)
     }
 
     /// The name of an object by number.
     pub fn name(&self, object: u32) -> &str {
-        self.names.get(object as usize).map_or(UNNAMED, |name| name)
+        self.keys.get(object as usize).map_or(UNNAMED, ObjectKey::name)
     }
 
-    /// All names by number.
+    /// What tells an object from all others, by number.
+    pub(crate) fn key(&self, object: u32) -> ObjectKey {
+        self.keys.get(object as usize).map_or_else(|| UNNAMED.into(), ObjectKey::clone)
+    }
+
+    /// All names by number; some may be the same.
     pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
         (0..self.count()).map(|object| self.name(object as u32))
     }
@@ -102,7 +152,7 @@ impl Objects {
     /// is among those that are added.
     pub(crate) fn append(&mut self, first: usize, other: &Objects, place: impl Fn(u32) -> usize) {
         for (&start, &object) in other.starts.iter().zip(&other.objects) {
-            self.begin(first + place(start), other.name(object));
+            self.begin(first + place(start), other.key(object));
         }
     }
 
@@ -111,7 +161,7 @@ impl Objects {
         let mut rest = Objects::default();
         let place = |start: u32| start.min(triangles.start) + start.saturating_sub(triangles.end.max(triangles.start));
         for (&start, &object) in self.starts.iter().zip(&self.objects) {
-            rest.begin(place(start) as usize, self.name(object));
+            rest.begin(place(start) as usize, self.key(object));
         }
         rest
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::{animation::Animation, camera::Camera, geometry::Geometry, lights::Lights};
@@ -58,6 +58,15 @@ pub struct LightMeshDefaults {
     pub weight: Option<Weight>,
 }
 
+/// A named place without a surface: a pivot, a bone, or what groups others. Nothing of it is seen, and exports keep it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Empty {
+    /// Its name.
+    pub name: String,
+    /// From its coordinates to the world's.
+    pub transform: DMat4,
+}
+
 /// Everything needed for rendering: geometry, lights and cameras, which change independently of each other. Cloning is cheap: the
 /// geometry is shared. Serde stores the scene as it is, in the order of bytes of the machine, but not [how it moves](Scene::animation()).
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -73,6 +82,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Proposed settings of the light mesh.
     pub light_mesh: LightMeshDefaults,
+    /// Named places without a surface.
+    pub empties: Vec<Empty>,
     /// The file that was read, and all files that it refers to, also those that do not exist or are not used: what a program must
     /// not overwrite. Empty for other scenes.
     pub files: Vec<PathBuf>,
@@ -95,6 +106,7 @@ impl Scene {
             lights: Lights::default(),
             cameras: Vec::new(),
             light_mesh: LightMeshDefaults::default(),
+            empties: Vec::new(),
             files: Vec::new(),
             warnings: Vec::new(),
             smooth_normals: 0,

@@ -1,6 +1,7 @@
 //! The hours of direct sun that were found, and what the pixels see.
 
 use lightmesh_image::{ExrOptions, Frame, Layers};
+use lightmesh_render::Glass;
 use lightmesh_scene::Camera;
 
 use super::points::Finer;
@@ -10,6 +11,8 @@ use crate::sun::SunStudy;
 pub struct SunHours {
     pub(super) study: SunStudy,
     pub(super) exr: ExrOptions,
+    /// What surfaces do that let light through; `None` if there are none.
+    pub(super) glass: Option<Glass>,
     /// What the pixels see.
     pub(super) frame: Frame,
     pub(super) camera: Camera,

@@ -8,10 +8,44 @@ const WHITE: [u8; 3] = [255; 3];
 const BLACK: [u8; 3] = [0; 3];
 /// Hours between marks, of which the first that leaves room for its labels is taken.
 const MARKS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 12.0];
-/// Shorter images get small letters.
-const SHORT: usize = 360;
-/// Scales are not shorter, however low the image.
-const SHORTEST: usize = 80;
+/// Letters are at most one part in this many of the image's shorter side, unless they could not be read.
+const LETTERS: usize = 36;
+/// Scales are not shorter than so many letters are high, however low the image.
+const SHORTEST: usize = 5;
+
+/// What stands above a scale.
+const HEADING: &str = "hours";
+/// Letters that its bar is wide.
+const BAR: usize = 2;
+
+/// A scale of hours.
+struct Scale {
+    /// Those of the most hours, and of none.
+    rows: [usize; 2],
+    most: f64,
+    /// The hours that have a mark.
+    labels: Vec<f64>,
+}
+
+impl Scale {
+    /// With marks as close as numbers of `high` rows allow.
+    fn new(rows: [usize; 2], most: f64, high: usize) -> Scale {
+        let length = (rows[1] - rows[0]) as f64;
+        let mark = MARKS.into_iter().find(|mark| mark / most * length >= 1.5 * high as f64).unwrap_or(24.0);
+        let labels = (0..).map(|number| f64::from(number) * mark).take_while(|hours| *hours <= most).collect();
+        let mut scale = Scale { rows, most, labels };
+        // The end, unless a mark is too close.
+        if scale.labels.last().is_some_and(|&last| scale.row_of(last) >= rows[0] + high) {
+            scale.labels.push(most);
+        }
+        scale
+    }
+
+    fn row_of(&self, hours: f64) -> usize {
+        let [top, bottom] = self.rows;
+        bottom - (hours / self.most * (bottom - top) as f64).round() as usize
+    }
+}
 
 /// An image in sRGB codes that grows by a legend.
 pub(super) struct Canvas {
@@ -27,19 +61,25 @@ impl Canvas {
     /// The codes row by row.
     pub(super) fn new(width: usize, codes: Vec<[u8; 3]>) -> Canvas {
         let height = codes.len() / width;
-        let letters = if width.min(height) < SHORT { SMALL } else { LARGE };
-        Canvas { width, height, codes, scale: (width.min(height) / 1200).max(1), letters }
+        let high = width.min(height) / LETTERS;
+        let letters = if high < LARGE.height { SMALL } else { LARGE };
+        // Between the two, small letters stay as they are: twice as large, they are no smaller than large ones.
+        let scale = if high < LARGE.height { 1 } else { high / LARGE.height };
+        Canvas { width, height, codes, scale, letters }
     }
 
     /// With a scale for values from 0 to `most` on its right, and `caption` below.
     pub(super) fn with_legend(self, most: f64, caption: &str) -> Canvas {
-        let (image, [_, high]) = ([self.width, self.height], self.letter());
-        let strip = self.columns("000.0") + 4 * high;
-        let mut all = self.grown(image[0] + strip, image[1].max(SHORTEST + 4 * high));
-        let image = [image[0], all.height];
-        all.scale_of_hours(image, most);
+        let (width, [wide, high]) = (self.width, self.letter());
+        let height = self.height.max((SHORTEST + 3) * high);
+        let scale = Scale::new([2 * high, height - high], most, high);
+        // Either the heading is the widest, or bar, marks and the longest label.
+        let labels = scale.labels.iter().map(|&hours| self.columns(&number(hours))).max().unwrap_or_default();
+        let strip = self.columns(HEADING).max(BAR * wide + wide + labels);
+        let mut all = self.grown(width + strip + 2 * wide, height);
+        all.draw(&scale, width + wide);
         // Below everything, in as many lines as are needed.
-        let lines = wrapped(caption, (all.width.saturating_sub(high) / all.letter()[0]).max(8));
+        let lines = wrapped(caption, (all.width.saturating_sub(high) / wide).max(8));
         let top = all.height;
         let size = [all.width, all.height + high / 2 + lines.len() * high + high / 2];
         let mut all = all.grown(size[0], size[1]);
@@ -54,29 +94,20 @@ impl Canvas {
         ([self.width, self.height], self.codes)
     }
 
-    /// A bar of all colours to the right of an image of this size, with marks and numbers.
-    fn scale_of_hours(&mut self, [width, height]: [usize; 2], most: f64) {
-        let [_, high] = self.letter();
-        self.text("hours", [width + high, high / 2]);
-        let (left, bar) = (width + high, high);
-        let (top, bottom) = (2 * high, height - high);
-        let length = bottom - top;
-        let row_of = |hours: f64| bottom - (hours / most * length as f64).round() as usize;
-        for row in top..bottom {
-            let color = viridis((bottom - row) as f64 / length as f64);
+    /// A bar of all colours from column `left` on, with marks and numbers.
+    fn draw(&mut self, scale: &Scale, left: usize) {
+        let [wide, high] = self.letter();
+        self.text(HEADING, [left, high / 2]);
+        let Scale { rows: [top, bottom], labels, .. } = scale;
+        let bar = BAR * wide;
+        for row in *top..*bottom {
+            let color = viridis((bottom - row) as f64 / (bottom - top) as f64);
             self.fill([left, row], [bar, 1], color);
         }
-        let mark = MARKS.into_iter().find(|mark| mark / most * length as f64 >= 1.5 * high as f64).unwrap_or(24.0);
-        let mut labels: Vec<f64> =
-            (0..).map(|number| f64::from(number) * mark).take_while(|hours| *hours <= most).collect();
-        // The end, unless a mark is too close.
-        if labels.last().is_some_and(|&last| row_of(last) >= top + high) {
-            labels.push(most);
-        }
-        for hours in labels {
-            let row = row_of(hours);
-            self.fill([left + bar, row.min(bottom - 1)], [high / 3, self.scale], BLACK);
-            self.text(&number(hours), [left + bar + high / 2, row - high / 2]);
+        for &hours in labels {
+            let row = scale.row_of(hours);
+            self.fill([left + bar, row.min(bottom - 1)], [wide / 2, self.scale], BLACK);
+            self.text(&number(hours), [left + bar + wide, row - high / 2]);
         }
     }
 
@@ -153,6 +184,27 @@ mod tests {
             let rest = codes.chunks(width).flat_map(|row| &row[side..]);
             assert!(rest.filter(|code| **code == [0; 3]).count() > 50, "{side}: there is text");
         }
+    }
+
+    /// Neither large beside a small image, nor too small to be read.
+    #[test]
+    fn the_legend_is_of_the_size_of_its_image() {
+        let added = |side: usize| {
+            let canvas = Canvas::new(side, vec![BLACK; side * side]);
+            let letter = canvas.letter()[1];
+            let ([width, _], _) = canvas.with_legend(13.4, "a caption").into_codes();
+            (width - side, letter)
+        };
+        for side in [240, 360, 512, 719, 720, 1024, 1440, 2160, 4000] {
+            let (strip, letter) = added(side);
+            assert!(
+                5 * strip <= side && letter >= 10 && LETTERS * letter <= side.max(360),
+                "{side}: {strip}, {letter}"
+            );
+            assert!(100 * letter >= side, "{side}: {letter}");
+        }
+        let (strip, letter) = added(16);
+        assert!(strip < 60 && letter == 10, "{strip}, {letter}");
     }
 
     #[test]

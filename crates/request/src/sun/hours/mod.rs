@@ -62,7 +62,7 @@ pub(super) fn write(study: &SunStudy, prepared: &PreparedScene, context: Context
         found.table_notes(host.words()).iter().for_each(|text| host.warning(text));
     }
     let names: Vec<String> = study.outputs.iter().map(|output| output.path.display().to_string()).collect();
-    Ok(format!("hours of direct sun of {} moments: {seconds:.3} s, {}", study.moments.len(), names.join(", ")))
+    Ok(format!("hours of direct sun, {}: {seconds:.3} s, {}", study.suns(), names.join(", ")))
 }
 
 impl SunHours {
@@ -76,13 +76,13 @@ impl SunHours {
         let Context { renderer, plan, host, .. } = context;
         let up = plan.staging.up_of(&prepared.scene.lights);
         let suns = suns(study, up, prepared.geometry.bounds).expect("the sun has a direction");
-        if let Some(note) = about_glass(&prepared.scene, study.glass, host.words()) {
-            host.note(&note);
-        }
+        let about_glass = about_glass(&prepared.scene, study.glass, host.words());
+        about_glass.iter().for_each(|note| host.note(note));
+        let glass = about_glass.map(|_| study.glass);
         let found = host.during(RENDERING, || {
             host.cancellable(|| SunHours::of(renderer, prepared, (&plan.settings, study, has_table), &suns, host))
         })?;
-        Ok(SunHours { exr: plan.files.options.exr, ..found })
+        Ok(SunHours { exr: plan.files.options.exr, glass, ..found })
     }
 
     /// The hours for which each of some `suns` shines on what each pixel of an image sees.
@@ -126,7 +126,8 @@ impl SunHours {
         let mask = layers.depth.iter().map(|depth| depth.is_finite()).collect();
         let hours = hours.into_iter().map(|hours| hours as f32).collect();
         let study = study.clone();
-        let found = SunHours { study, exr: ExrOptions::default(), frame, camera, hours, mask, finer: Finer::default() };
+        let (exr, finer) = (ExrOptions::default(), Finer::default());
+        let found = SunHours { study, exr, glass: None, frame, camera, hours, mask, finer };
         let finer = has_table.then(|| Finer::of(&found, renderer, prepared, (&settings, suns), host)).transpose()?;
         Ok(SunHours { finer: finer.unwrap_or_default(), ..found })
     }

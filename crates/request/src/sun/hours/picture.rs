@@ -5,6 +5,7 @@
 
 use glam::Vec3;
 use lightmesh_image::{Frame, Transfer};
+use lightmesh_render::Glass;
 
 use super::colors::viridis;
 use super::found::SunHours;
@@ -36,13 +37,13 @@ pub(super) fn picture(found: &SunHours, study: &SunStudy) -> Frame {
         false => NOTHING,
     };
     let codes = (0..found.hours.len()).map(code).collect();
-    let canvas = Canvas::new(found.frame.width() as usize, codes).with_legend(most, &caption(study));
+    let canvas = Canvas::new(found.frame.width() as usize, codes).with_legend(most, &caption(study, found.glass));
     let ([width, height], codes) = canvas.into_codes();
     let colors = codes.iter().map(|code| code.map(|channel| Transfer::Srgb.decode(channel))).collect();
     Frame::new(width as u32, height as u32, colors).expect("a canvas has pixels")
 }
 
-fn caption(study: &SunStudy) -> String {
+pub(super) fn caption(study: &SunStudy, glass: Option<Glass>) -> String {
     let spec = &study.spec;
     let zone = match spec.offset {
         0 => "UTC".to_owned(),
@@ -52,8 +53,9 @@ fn caption(study: &SunStudy) -> String {
         format!("{} {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
     };
     let step = spec.step.map_or(String::new(), |step| format!(", every {step} min"));
+    let glass = glass.map_or(String::new(), |glass| format!(" Glass is {}. {}.", glass.name(), glass.help()));
     format!(
-        "Direct sun on {}, {}-{} ({zone}), at {} {}{step}. Grey: no surface.",
+        "Direct sun on {}, {}-{} ({zone}), at {} {}{step}.{glass} Grey: no surface.",
         spec.date(),
         clock(spec.from),
         clock(spec.to),

@@ -148,7 +148,9 @@ fn the_table_sums_what_is_seen() {
 #[test]
 fn a_polar_night_has_no_hours_and_a_polar_day_all() {
     let night = study("78,15,2026-12-21+01:00,00:00-24:00/1h");
-    assert!(night.moments.is_empty() && night.left_out(crate::words::Words::Flags).unwrap().contains("25 moments"));
+    assert!(
+        night.moments.is_empty() && night.left_out(true, crate::words::Words::Flags).unwrap().contains("25 moments")
+    );
     let found = hours_of(&format!("{PLAN}{BOX}"), &night);
     assert!(found.hours().iter().all(|&hours| hours == 0.0) && found.mask().iter().all(|&sees| sees));
     let table = found.table();
@@ -294,4 +296,28 @@ fn objects_of_too_few_points_are_told() {
     assert_eq!(table::short(&found), 1, "{}", found.table());
     let text = found.short(Words::Flags).unwrap();
     assert!(text.contains("hours of 1 object rest on fewer than 16 points") && text.contains("--size"), "{text}");
+}
+
+#[test]
+fn the_caption_says_how_glass_counts() {
+    let of = |glass| {
+        let study = SunStudy { glass, ..study("48,0,2026-04-20Z,12:00-13:00") };
+        picture::caption(&study, Some(glass))
+    };
+    assert!(of(Glass::Open).contains(" Glass is open. It hides no sun; "), "{}", of(Glass::Open));
+    assert!(of(Glass::Closed).contains(" Glass is closed. It hides the sun as a wall does. "), "{}", of(Glass::Closed));
+    assert!(of(Glass::Tinted).contains(" Glass is tinted. Behind it counts the share "), "{}", of(Glass::Tinted));
+    assert!(!picture::caption(&study("48,0,2026-04-20Z,12:00-13:00"), None).contains("Glass"));
+}
+
+#[test]
+fn messages_speak_of_moments_only_where_there_are_some() {
+    let with = study("0,0,2026-03-20Z,00:00-24:00/3h");
+    let without = study("0,0,2026-03-20Z,00:00-24:00");
+    assert_eq!(with.suns(), "4 moments 180 min apart");
+    assert_eq!(without.suns(), "all the time from 00:00 to 24:00 by 48 parts of the sun's way");
+    let left_out = |study: &SunStudy, has_frames| study.left_out(has_frames, Words::Flags).unwrap();
+    assert!(left_out(&with, false).contains("5 moments are left out, from 00:00 to 24:00"));
+    assert!(left_out(&without, true).contains("49 moments are left out"));
+    assert!(left_out(&without, false).starts_with("--sun: 11.9 of 24.0 hours have no direct sun: "));
 }

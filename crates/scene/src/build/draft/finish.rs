@@ -68,6 +68,7 @@ impl Draft {
             lights,
             cameras,
             light_mesh: self.light_mesh,
+            empties: self.empties,
             files: self.files.into_iter().collect(),
             warnings,
             smooth_normals: self.smooth_normals,

@@ -28,7 +28,8 @@ use super::{
 use crate::model::animation::parts::{Hold, MovingPart, Shape};
 use crate::model::transforms::{is_place, mirrors};
 use crate::{
-    Animation, Camera, Instancing, Light, LightMeshDefaults, Material, Objects, Position, Surroundings, Texture,
+    Animation, Camera, Empty, Instancing, Light, LightMeshDefaults, Material, ObjectKey, Objects, Position,
+    Surroundings, Texture, UNNAMED,
 };
 
 /// Collects the content of a file; [`Draft::finish`] turns it into a [`Scene`](crate::Scene).
@@ -40,7 +41,9 @@ pub struct Draft {
     /// Vertices that got a normal.
     smooth_normals: usize,
     /// The object of triangles that are added, unless their mesh names its own.
-    object: String,
+    object: ObjectKey,
+    /// How many objects have been begun that may share their names.
+    numbered: u32,
     /// Where the scene's files may lie.
     pub(crate) access: FileAccess,
     builder: SceneBuilder,
@@ -73,6 +76,7 @@ pub struct Draft {
     pub(crate) background: Option<Vec3>,
     pub(crate) surroundings: Option<Surroundings>,
     pub(crate) light_mesh: LightMeshDefaults,
+    pub(crate) empties: Vec<Empty>,
     pub(crate) warnings: Warnings,
     /// How things move.
     pub(crate) animation: Animation,
@@ -90,7 +94,8 @@ impl Draft {
             strict: options.strict,
             smooth: options.smooth,
             smooth_normals: 0,
-            object: String::new(),
+            object: UNNAMED.into(),
+            numbered: 0,
             access: FileAccess::new(path, options),
             builder: SceneBuilder::new(),
             unusable_triangles: 0,
@@ -111,6 +116,7 @@ impl Draft {
             background: None,
             surroundings: None,
             light_mesh: LightMeshDefaults::default(),
+            empties: Vec::new(),
             warnings: Warnings::default(),
             animation: Animation::default(),
             animation_name: options.animation.clone(),
@@ -168,8 +174,16 @@ impl Draft {
     }
 
     /// Triangles that are added from now on belong to the object `name`, unless their mesh names its own.
-    pub(crate) fn begin_object(&mut self, name: impl Into<String>) {
+    pub(crate) fn begin_object(&mut self, name: impl Into<ObjectKey>) -> ObjectKey {
         self.object = name.into();
+        self.object.clone()
+    }
+
+    /// The same for an object of its own, whatever others are called; returns what tells it from them.
+    pub(crate) fn begin_own_object(&mut self, name: &str) -> ObjectKey {
+        self.numbered = self.numbered.saturating_add(1);
+        self.object = ObjectKey::numbered(name, self.numbered);
+        self.object.clone()
     }
 
     /// Names `count` triangles that are going to be added: by the objects of their mesh, or the one that was begun. `place` says where

@@ -5,8 +5,8 @@ use std::ops::Range;
 use glam::DMat4;
 
 use super::Draft;
-use crate::LoadError;
 use crate::model::animation::parts::MovingInstance;
+use crate::{LoadError, ObjectKey};
 
 impl Draft {
     /// Whether a shape of so many triangles is stored once for all of its places.
@@ -26,6 +26,7 @@ impl Draft {
         self.builder.exchange_shapes(&mut self.beside_shape);
         let (own, mover) = (std::mem::take(&mut self.without_uvs), self.mover.take());
         let views = (self.cameras.len(), self.lights.len());
+        let empties = self.empties.len();
         self.shape_moves = false;
         let first = self.builder.triangle_count();
         let added = add(self);
@@ -39,6 +40,8 @@ impl Draft {
         let has_views = views != (self.cameras.len(), self.lights.len());
         self.cameras.truncate(views.0);
         self.lights.truncate(views.1);
+        // They are nowhere either.
+        self.empties.truncate(empties);
         self.builder.exchange_shapes(&mut self.beside_shape);
         let can_be_placed = !has_views && !self.shape_moves && !shape.is_empty();
         added.map(|()| can_be_placed.then_some(shape))
@@ -49,7 +52,7 @@ impl Draft {
         &mut self,
         shape: Range<usize>,
         transform: &DMat4,
-        object: Option<&str>,
+        object: Option<&ObjectKey>,
         held: Option<(u32, DMat4)>,
     ) -> bool {
         if !self.builder.place(shape, transform, object) {
@@ -66,7 +69,7 @@ impl Draft {
     }
 
     /// The objects of a shape, each with a run of its triangles; none if nothing in it was named.
-    pub(crate) fn objects_of(&mut self, shape: &Range<usize>) -> Vec<(Range<usize>, String)> {
+    pub(crate) fn objects_of(&mut self, shape: &Range<usize>) -> Vec<(Range<usize>, ObjectKey)> {
         self.builder.exchange_shapes(&mut self.beside_shape);
         let objects = self.builder.objects_of(shape);
         self.builder.exchange_shapes(&mut self.beside_shape);

@@ -1,7 +1,7 @@
 //! A scene as binary glTF 2.0.
 //!
-//! Objects are nodes of their names, with a primitive for each material; what is placed many times is stored once ([`objects`]). Vertices are
-//! stored in the local frame, below nodes that are translated to the frame's origin.
+//! Objects are nodes of their names, with a primitive for each material; what is placed many times is stored once ([`objects`]). Named places
+//! without a surface are nodes, too. Vertices are stored in the local frame, below nodes that are translated to the frame's origin.
 
 mod arrays;
 pub(super) mod material;
@@ -15,7 +15,7 @@ use glam::{DVec3, Vec3};
 use serde_json::{Map, Value, json};
 
 use self::material::material;
-use self::objects::Objects;
+use self::objects::{Objects, empty_node};
 use self::pictures::Pictures;
 use self::views::{camera_entry, camera_node, light_entry, light_node};
 use super::error::{ExportError, refused};
@@ -60,6 +60,7 @@ pub(super) fn encode(scene: &Scene, content: Content, path: &Path) -> Result<Vec
         pictures.write(scene, &mut bin, &mut root);
         root["buffers"] = json!([{"byteLength": bin.len()}]);
     }
+    nodes.extend(scene.empties.iter().map(empty_node));
     let mut extras = Map::new();
     if content == Content::Everything {
         if !scene.cameras.is_empty() {

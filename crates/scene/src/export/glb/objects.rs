@@ -9,7 +9,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use serde_json::{Value, json};
 
 use super::arrays::{Arrays, Triangles};
-use crate::{Instance, Scene};
+use crate::{Empty, Instance, Scene};
 
 /// From this number of places on, a shape is placed by arrays in place of nodes.
 const VERY_MANY: usize = 1000;
@@ -137,6 +137,19 @@ impl Objects {
         });
         nodes.collect()
     }
+}
+
+/// A node without a mesh. Where its place is none that glTF has, it is in the middle of that.
+pub(super) fn empty_node(empty: &Empty) -> Value {
+    let place = DAffine3::from_mat4(empty.transform);
+    let mut node = json!({"name": empty.name});
+    let size = place.matrix3.determinant();
+    if place.matrix3 != DMat3::IDENTITY && size.is_finite() && size != 0.0 && !shears(&place) {
+        node["matrix"] = json!(empty.transform.to_cols_array());
+    } else if place.translation != DVec3::ZERO && place.translation.is_finite() {
+        node["translation"] = json!(place.translation.to_array());
+    }
+    node
 }
 
 /// What the places of one list have in common: the shape, and their object.

@@ -79,6 +79,7 @@ pub(super) fn light_entry(bounds: &Bounds, light: &Light) -> Value {
             _ => None,
         },
         one_sided: light.surface.is_some(),
+        aimed: light.surface.is_some(),
         no_falloff: light.falloff == Falloff::None,
         visible: light.visible,
         ..LightExtras::default()
@@ -98,6 +99,7 @@ pub(super) fn light_entry(bounds: &Bounds, light: &Light) -> Value {
             extras.spread = some(spread);
             "point"
         }
+        _ if light.surface.is_some() => "spot",
         _ => "point",
     };
     let mut entry = json!({"type": kind, "color": color.to_array(), "intensity": strongest});
@@ -110,6 +112,10 @@ pub(super) fn light_entry(bounds: &Bounds, light: &Light) -> Value {
         let outer = f64::from(outer).min(FRAC_PI_2);
         let inner = f64::from(inner).min(outer * (1.0 - 1e-9));
         entry["spot"] = json!({"innerConeAngle": inner, "outerConeAngle": outer});
+    }
+    if light.surface.is_some() {
+        // From all to nothing over a right angle: programs that follow the format's advice fade it by the square of the cosine.
+        entry["spot"] = json!({"innerConeAngle": 0.0, "outerConeAngle": FRAC_PI_2});
     }
     entry
 }
@@ -127,17 +133,22 @@ fn standard_unit(bounds: &Bounds, light: &Light) -> f64 {
     if distance > 0.0 { PI * distance * distance } else { PI }
 }
 
-/// Directional lights store their direction in the node; the extras of area lights are in the node's frame.
+/// Directional lights and spots store their direction in the node. The extras of area lights are in the node's frame, or if they are aimed, in
+/// that around it.
 pub(super) fn light_node(scene: &Scene, index: usize, light: &Light) -> Value {
     let world = light.position().map_or(DVec3::ZERO, |position| scene.to_world(position));
     let mut node = json!({"extensions": {"KHR_lights_punctual": {"light": index}}});
     name(&mut node, &light.name);
-    match light.kind {
-        LightKind::Directional { direction, .. } | LightKind::Spot { direction, .. } => {
+    let aim = match light.kind {
+        LightKind::Directional { direction, .. } | LightKind::Spot { direction, .. } => Some(direction),
+        _ => light.surface,
+    };
+    match aim {
+        Some(direction) => {
             let direction = direction.as_dvec3();
             node["matrix"] = json!(look(world, direction, tangents(direction).1));
         }
-        _ => node["translation"] = json!(world.to_array()),
+        None => node["translation"] = json!(world.to_array()),
     }
     node
 }

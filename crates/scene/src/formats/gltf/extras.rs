@@ -159,7 +159,7 @@ fn is_zero(color: &[f32; 3]) -> bool {
     Vec3::from(*color) == Vec3::ZERO
 }
 
-/// Of a light: its size, in the node's coordinates, and whether distance does not attenuate it.
+/// Of a light: its size, in the node's coordinates or those of what is around it, and whether distance does not attenuate it.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LightExtras {
@@ -177,6 +177,9 @@ pub(crate) struct LightExtras {
     /// Of a disk or rectangle: whether it shines like a surface, to the side of its normal or of half_u × half_v.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(crate) one_sided: bool,
+    /// Whether its node is turned only so that a spot shines to that side: the shape is as it is without that turn.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) aimed: bool,
     /// Falloff `none`; else inverse-square, as in glTF.
     #[serde(default)]
     pub(crate) no_falloff: bool,
@@ -188,7 +191,7 @@ pub(crate) struct LightExtras {
     pub(crate) visible: bool,
 }
 
-/// The shape of a light that is a point in glTF.
+/// The shape of a light that is a point or a spot in glTF.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum ShapeExtras {

@@ -10,7 +10,7 @@ use glam::{Affine2, Vec3};
 use super::{
     container::malformed,
     document::{self, MaterialExtensions, MetallicRoughness, NormalTexture, TextureInfo, Transmission, Volume},
-    extras::{self, ColorExtras, MaterialExtras, OpacityExtras},
+    extras::{self, MaterialExtras},
     left_out::LeftOut,
 };
 use crate::{LoadError, Material, Opacity, OpacityMode, Principled, TextureUse};
@@ -19,17 +19,29 @@ use crate::{LoadError, Material, Opacity, OpacityMode, Principled, TextureUse};
 const CLEAR: f32 = 0.1;
 
 /// The material without its texture, by our own extras if the file has them.
-pub(super) fn read(path: &Path, index: usize, of: &document::Material) -> Result<Material, LoadError> {
+pub(super) fn read(of: &document::Material, own: Option<&MaterialExtras>) -> Material {
     let name = of.name.as_deref().unwrap_or_default().to_owned();
+    let material = match own {
+        Some(own) => own.clone().into_material(name),
+        None => Material { name, ..translated(of) },
+    };
+    one_sided(material, of)
+}
+
+/// What our own extras say of a material, if it has some.
+pub(super) fn own_extras(
+    path: &Path,
+    index: usize,
+    of: &document::Material,
+) -> Result<Option<MaterialExtras>, LoadError> {
     let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
-    if let Some(own) = own {
-        if !(own.shininess > 0.0 && own.shininess.is_finite()) {
+    match own {
+        Some(own) if !(own.shininess > 0.0 && own.shininess.is_finite()) => {
             let problem = format!("extras.lightmesh of material {index} has shininess = {}", own.shininess);
-            return Err(malformed(path, problem));
+            Err(malformed(path, problem))
         }
-        return Ok(one_sided(own.into_material(name), of));
+        own => Ok(own),
     }
-    Ok(one_sided(Material { name, ..translated(of) }, of))
 }
 
 /// Back faces are not seen, says glTF, so that what they emit lights nothing.
@@ -39,16 +51,11 @@ fn one_sided(material: Material, of: &document::Material) -> Material {
 }
 
 /// How the material places its texture, and those of its emission, of its normals and of its facets, if our own extras specify it.
-pub(super) fn texture_transforms(
-    path: &Path,
-    index: usize,
-    of: &document::Material,
-) -> Result<[Option<Affine2>; 4], LoadError> {
-    let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
+pub(super) fn texture_transforms(own: Option<&MaterialExtras>) -> [Option<Affine2>; 4] {
     let columns = own.map_or([None; 4], |own| {
         [own.texture_transform, own.emission_transform, own.normal_transform, own.metallic_roughness_transform]
     });
-    Ok(columns.map(|columns| columns.map(|columns| Affine2::from_cols_array(&columns))))
+    columns.map(|columns| columns.map(|columns| Affine2::from_cols_array(&columns)))
 }
 
 /// The image that the emission is multiplied with. What an unlit material emits is its base colour.
@@ -69,26 +76,6 @@ pub(super) fn metallic_roughness_texture<'a>(of: &'a document::Material) -> Opti
 
 fn is_unlit(of: &document::Material) -> bool {
     of.extensions.as_deref().is_some_and(|extensions| extensions.unlit.is_some())
-}
-
-/// Where the surface is, and what it lets through, if our own extras specify it.
-pub(super) fn opacity_extras(
-    path: &Path,
-    index: usize,
-    of: &document::Material,
-) -> Result<Option<OpacityExtras>, LoadError> {
-    let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
-    Ok(own.and_then(|own| own.opacity))
-}
-
-/// The image that tints it, if our own extras specify it.
-pub(super) fn color_extras(
-    path: &Path,
-    index: usize,
-    of: &document::Material,
-) -> Result<Option<ColorExtras>, LoadError> {
-    let own: Option<MaterialExtras> = extras::read(path, &format!("material {index}"), of.extras)?;
-    Ok(own.and_then(|own| own.color))
 }
 
 /// Counts the properties of the material that are not shown.

@@ -107,11 +107,13 @@ impl Materials {
         for (index, entry) in document.materials.iter().enumerate() {
             material::count_left_out(entry, left_out);
             let info = entry.pbr_metallic_roughness.as_deref().and_then(|pbr| pbr.base_color_texture.as_ref());
-            let found = match material::color_extras(path, index, entry)? {
-                Some(own) => color(&own, &mut pictures, draft),
+            let own = material::own_extras(path, index, entry)?;
+            let own = own.as_ref();
+            let found = match own.and_then(|own| own.color.as_ref()) {
+                Some(own) => color(own, &mut pictures, draft),
                 None => info.and_then(|info| pictures.find(info, draft)),
             };
-            let material = material::read(path, index, entry)?;
+            let material = material::read(entry, own);
             let (mut texture, mut set) = found.unzip();
             let (mut emission, mut emission_texture) = (material.emission, None);
             if let Some(info) = material::emissive_texture(entry) {
@@ -128,7 +130,7 @@ impl Materials {
             let misplaced = &mut left_out.roughness_textures;
             let mut metallic_roughness_texture = material::metallic_roughness_texture(entry)
                 .and_then(|info| further(info, &mut set, misplaced, &mut pictures, draft));
-            let exact = material::texture_transforms(path, index, entry)?;
+            let exact = material::texture_transforms(own);
             let normals = normal_texture.as_mut().map(|map| &mut map.uses);
             let textures = [texture.as_mut(), emission_texture.as_mut(), normals, metallic_roughness_texture.as_mut()];
             for (texture, exact) in textures.into_iter().zip(exact) {
@@ -136,8 +138,8 @@ impl Materials {
                     texture.transform = exact;
                 }
             }
-            let opacity = match material::opacity_extras(path, index, entry)? {
-                Some(own) => Some(opacity(&own, &mut pictures, draft)),
+            let opacity = match own.and_then(|own| own.opacity.as_ref()) {
+                Some(own) => Some(opacity(own, &mut pictures, draft)),
                 None => material::opacity(entry, texture),
             };
             materials.read.push(Read { material: draft.materials.len() as u32, set, opacity: opacity.is_some() });

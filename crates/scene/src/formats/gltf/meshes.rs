@@ -27,7 +27,7 @@ use crate::build::mesh_part::Room;
 use crate::model::animation::parts::{Hold, Shape};
 use crate::model::instances::MAX_INSTANCED;
 use crate::model::transforms::mirrors;
-use crate::{Affine, LoadError, MeshPart, OwnedPositions};
+use crate::{Affine, Empty, LoadError, MeshPart, OwnedPositions};
 
 /// How a primitive's vertices form triangles, by its number in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,9 +135,16 @@ impl<'a> Meshes<'a> {
                 _ => None,
             };
             let (number, name) = shown.node;
-            let named = object.or(name).or(self.meshes[shown.mesh as usize].name.as_deref());
-            let name = named.map_or_else(|| format!("node {number}"), str::to_owned);
-            draft.begin_object(&name);
+            let named = name.or(self.meshes[shown.mesh as usize].name.as_deref());
+            // A name that is given from outside makes one object of all nodes; their own names may be those of others, too.
+            let object = match (object, named) {
+                (Some(object), _) => draft.begin_object(object),
+                (None, Some(name)) => draft.begin_own_object(name),
+                (None, None) => draft.begin_own_object(&format!("node {number}")),
+            };
+            if let (true, Some(name)) = (survey.primitives.is_empty(), name) {
+                draft.empties.push(Empty { name: name.to_owned(), transform: shown.transform });
+            }
             let mut add = |shown: &Shown, instances: Option<&Instances>, draft: &mut Draft| -> Result<(), LoadError> {
                 for &(primitive, mode) in &survey.primitives {
                     let chosen = materials.choose(primitive, left_out, draft);
@@ -171,7 +178,7 @@ impl<'a> Meshes<'a> {
                         shapes.entry((shown.mesh, mirrored)).or_insert(shape).clone()
                     }
                 };
-                if !shape.is_some_and(|shape| draft.place(shape, &transform, Some(&name), held)) {
+                if !shape.is_some_and(|shape| draft.place(shape, &transform, Some(&object), held)) {
                     add(&one(transform), None, draft)?;
                 }
             }

@@ -88,6 +88,7 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>, placement: &Placement, draft: &m
     let mut rigged = Rigged::new(&accessors, &placed, placement, mover, bends, &mut left_out, draft)?;
     let shown = shown(&accessors, &placed, &mut rigged)?;
     Meshes::new(accessors).add(&shown, &rigged, &mut materials, &mut left_out, placement.object.as_deref(), draft)?;
+    draft.empties.extend(placed.iter().filter_map(Placed::empty));
     if placement.part {
         left_out.count_views(&placed);
     } else {

@@ -11,7 +11,7 @@ use super::{
 use crate::build::draft::Draft;
 use crate::build::geometry_check::is_affine;
 use crate::model::animation::rig;
-use crate::{LoadError, Place};
+use crate::{Empty, LoadError, Place};
 
 /// A node with its transform to world coordinates.
 pub(super) struct Placed<'a> {
@@ -20,12 +20,27 @@ pub(super) struct Placed<'a> {
     pub(super) parent: Option<usize>,
     pub(super) node: &'a Node,
     pub(super) transform: DMat4,
+    /// That of what it is in.
+    pub(super) outer: DMat4,
 }
 
 impl Placed<'_> {
     /// Index of the node's light.
     pub(super) fn light(&self) -> Option<u32> {
         self.node.extensions.as_ref()?.light.as_ref().map(|reference| reference.light)
+    }
+
+    /// Its transform without its own turn and factors.
+    pub(super) fn unturned(&self) -> DMat4 {
+        DMat4 { w_axis: self.transform.w_axis, ..self.outer }
+    }
+
+    /// The node as a place, if it has a name and nothing else.
+    pub(super) fn empty(&self) -> Option<Empty> {
+        let Node { name, mesh, camera, .. } = self.node;
+        let name = name.as_deref().filter(|name| !name.is_empty())?;
+        let is_empty = mesh.is_none() && camera.is_none() && self.light().is_none();
+        is_empty.then(|| Empty { name: name.to_owned(), transform: self.transform })
     }
 }
 
@@ -60,7 +75,7 @@ pub(super) fn placed<'a>(
         let transform = outer * own_place.matrix();
         let own = index as usize;
         stack.extend(node.children.iter().rev().map(|&child| (child, Some(own), transform)));
-        placed.push(Placed { index: own, parent, node, transform });
+        placed.push(Placed { index: own, parent, node, transform, outer });
     }
     Ok(placed)
 }

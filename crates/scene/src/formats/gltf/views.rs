@@ -93,11 +93,15 @@ impl<'a> Views<'a> {
             left_out.unknown_lights += 1;
             return Ok(());
         };
-        let carried = found.carried(&placed.transform).ok_or_else(|| match own.shape {
+        let transform = if own.aimed { placed.unturned() } else { placed.transform };
+        let carried = found.carried(&transform).ok_or_else(|| match own.shape {
             Some(_) => malformed(self.path, format!("extras.lightmesh of light {index} does not give it a valid size")),
             None => flat(self.path, placed),
         })?;
-        let motion = mover.map(|node| numbered(&mut draft.animation.lights, Motion::Node(node, found.into())));
+        // Where it moves, it turns with its node.
+        let turned = placed.transform.inverse() * transform;
+        let in_node = if own.aimed { found.carried(&turned).unwrap_or(found) } else { found };
+        let motion = mover.map(|node| numbered(&mut draft.animation.lights, Motion::Node(node, in_node.into())));
         let named = Light { name: name(light.name.as_deref(), placed), motion, ..carried };
         draft.lights.push((named, placed.transform.w_axis.truncate()));
         Ok(())

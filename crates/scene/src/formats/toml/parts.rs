@@ -185,7 +185,7 @@ impl Repeats {
         // Objects keep their names where they are not very many: each is placed by itself.
         let objects = match objects.len() {
             1..=MOST_OBJECTS => objects,
-            _ => vec![(shape, entry.name.as_ref().map_or_else(stem, |name| name.get_ref().clone()))],
+            _ => vec![(shape, entry.name.as_ref().map_or_else(stem, |name| name.get_ref().clone()).into())],
         };
         let held = draft.mover.map(|node| (node, *transform));
         // What cannot be placed so is so already for the first one.

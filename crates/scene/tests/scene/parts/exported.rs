@@ -5,8 +5,8 @@ use std::fs;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lightmesh_scene::{
-    Facets, Falloff, Instancing, Light, LoadOptions, Material, MeshPart, Opacity, OpacityChannel, Scene, SceneBuilder,
-    Texture, TextureUse,
+    Empty, Facets, Falloff, Instancing, Light, LoadOptions, Material, MeshPart, Opacity, OpacityChannel, Scene,
+    SceneBuilder, Texture, TextureUse,
 };
 use serde_json::Value;
 
@@ -324,7 +324,7 @@ fn what_gltf_cannot_say_is_a_warning() {
     for expected in [
         "2 lights the same at any distance: other programs show them with inverse-square falloff, in candela that give the same light at the \
          middle of the scene",
-        "1 light shining to one side of a surface: other programs show it as light from a point to all sides",
+        "1 light shining to one side of a surface: other programs show it like a spot to that side, with hard shadows",
         "2 lights with a size: other programs show them as light from a point, with hard shadows",
         "1 light that cameras see: other programs show it without a surface",
         "1 material with a Phong lobe (ks, shininess): other programs show it as a rough layer",
@@ -404,4 +404,81 @@ fn groups_of_shared_obj_files_stay_objects() {
         assert_eq!(named_nodes(&json(&scene)).into_iter().collect::<BTreeSet<_>>(), names(&scene), "{file}");
         assert_eq!(names(&reread(&scene, &LoadOptions::default())), names(&scene), "{file}");
     }
+}
+
+/// A group that is turned, with a pivot, two things of one name and a mesh of lines in it; one more thing of that name shares a mesh.
+const NAMED: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"name": "group", "children": [1, 2, 3, 4, 5, 6], "translation": [1, 2, 3], "rotation": [0, 0.70710678, 0, 0.70710678]},
+        {"name": "pivot", "translation": [0, 0, 1]}, {"name": "chair", "mesh": 0}, {"name": "chair", "mesh": 1},
+        {"name": "chair", "mesh": 1, "translation": [5, 0, 0]}, {"name": "lines", "mesh": 2}, {"translation": [7, 7, 7]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}, {"primitives": [{"attributes": {"POSITION": 0}}]},
+        {"primitives": [{"attributes": {"POSITION": 0}, "mode": 3}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn every_named_node_is_there_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("named.gltf");
+    std::fs::write(&path, NAMED).unwrap();
+    for options in [LoadOptions::default(), always()] {
+        let scene = Scene::open_with(&path, &options).unwrap();
+        assert_eq!(scene.geometry.mesh.objects.names().collect::<Vec<_>>(), ["chair"; 3]);
+        for name in ["again.glb", "again.toml"] {
+            let read = folder.path().join(name);
+            scene.export(&read).unwrap();
+            let read = Scene::open_with(&read, &options).unwrap();
+            let json = json(&read);
+            let mut names: Vec<&str> = list(&json["nodes"]).iter().filter_map(|node| node["name"].as_str()).collect();
+            names.sort_unstable();
+            assert_eq!(names, ["chair", "chair", "chair", "group", "lines", "pivot"], "{name}");
+            let pivot = read.empties.iter().find(|empty| empty.name == "pivot").unwrap();
+            let place = pivot.transform.w_axis.truncate();
+            assert!(place.distance(DVec3::new(2.0, 2.0, 3.0)) < 1e-6, "{name}: {place}");
+            assert_same_shape(&scene, &read);
+        }
+    }
+}
+
+#[test]
+fn places_that_gltf_does_not_have_keep_their_middle() {
+    let mut scene = instances(&[]);
+    let shear =
+        DMat4::from_rotation_z(0.5) * DMat4::from_scale(DVec3::new(2.0, 1.0, 1.0)) * DMat4::from_rotation_z(0.5);
+    let flat = DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0));
+    for (name, transform) in [("shear", shear), ("flat", flat)] {
+        let transform = DMat4::from_translation(DVec3::Y) * transform;
+        scene.empties.push(Empty { name: name.to_owned(), transform });
+    }
+    let json = json(&scene);
+    for node in &list(&json["nodes"])[1..] {
+        assert_eq!((&node["translation"], node.get("matrix")), (&serde_json::json!([0.0, 1.0, 0.0]), None));
+    }
+}
+
+#[test]
+fn panels_are_spots_to_their_side() {
+    let (direction, position) = (Vec3::new(0.6, -0.8, 0.0), Vec3::new(1.0, 2.0, 3.0));
+    let mut scene = instances(&[]);
+    scene.lights.list = vec![
+        Light::disk(position, direction, 0.5).unwrap(),
+        Light::rectangle(position, 0.5 * Vec3::X, 0.25 * Vec3::Z).unwrap().with_falloff(Falloff::InverseSquare),
+        Light::rectangle(position, Vec3::X, Vec3::Z).unwrap().with_one_sided(false),
+    ];
+    let json = json(&scene);
+    let lights = list(&json["extensions"]["KHR_lights_punctual"]["lights"]);
+    let kinds: Vec<_> = lights.iter().map(|light| light["type"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["spot", "spot", "point"]);
+    let half_turn = std::f64::consts::FRAC_PI_2;
+    assert_eq!(lights[0]["spot"], serde_json::json!({"innerConeAngle": 0.0, "outerConeAngle": half_turn}));
+    let nodes: Vec<_> = list(&json["nodes"]).iter().filter(|node| node["extensions"].is_object()).collect();
+    for (node, side) in nodes.iter().zip([direction, Vec3::NEG_Y]) {
+        let back: Vec<f64> = list(&node["matrix"])[8..11].iter().map(|value| value.as_f64().unwrap()).collect();
+        assert!(DVec3::from_slice(&back).distance(-side.as_dvec3()) < 1e-6, "{back:?}");
+    }
+    let warnings = scene.export_warnings("a.glb").unwrap();
+    let expected = "2 lights shining to one side of a surface: other programs show them like a spot to that side, with hard shadows";
+    assert!(warnings.iter().any(|warning| warning == expected), "{warnings:?}");
+    assert_eq!(reread(&scene, &LoadOptions::default()).lights.list, scene.lights.list);
 }

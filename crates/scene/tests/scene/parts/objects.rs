@@ -1,5 +1,5 @@
 use lightmesh_scene::internals::objects::append;
-use lightmesh_scene::{Objects, UNNAMED};
+use lightmesh_scene::{ObjectKey, Objects, UNNAMED};
 
 fn objects(runs: &[(usize, &str)]) -> Objects {
     let mut objects = Objects::default();
@@ -35,4 +35,18 @@ fn a_mesh_continues_another() {
     // Of its triangles 0 to 5, the second and third are left out.
     append(&mut whole, 10, &objects(&[(0, "b"), (1, "c"), (3, "a")]), |triangle| [0, 1, 1, 1, 2, 3][triangle as usize]);
     assert_eq!([9, 10, 11, 12].map(|triangle| whole.name(whole.of(triangle))), ["a", "b", "a", "a"]);
+}
+
+#[test]
+fn objects_with_keys_of_their_own_share_a_name() {
+    let mut found = Objects::default();
+    for (first, key) in [(0, ObjectKey::numbered("a", 1)), (1, ObjectKey::numbered("a", 2)), (2, "a".into())] {
+        found.begin(first, key);
+    }
+    found.begin(3, ObjectKey::numbered("a", 1));
+    assert_eq!([0, 1, 2, 3].map(|triangle| found.of(triangle)), [0, 1, 2, 0]);
+    assert_eq!(found.names().collect::<Vec<_>>(), ["a"; 3]);
+    let mut whole = objects(&[(0, "a")]);
+    append(&mut whole, 1, &found, |triangle| triangle as usize);
+    assert_eq!([0, 1, 2, 3, 4].map(|triangle| whole.of(triangle)), [0, 1, 2, 0, 1]);
 }

@@ -206,6 +206,7 @@ fn what_is_around_an_image_says_where_it_lies() {
             );
             let back = read(&bytes).unwrap();
             assert_eq!((back.color(), back.layers()), (around.color(), around.layers()), "{compression}");
+            assert_eq!(back.window(), around.window(), "{compression}");
         }
     }
 }
