@@ -62,6 +62,7 @@ mod png;
 mod radiance;
 mod save;
 mod sizes;
+mod stack;
 mod transfer;
 
 pub use compare::{CompareError, Comparison, LinearDifference, compare, compare_linear};

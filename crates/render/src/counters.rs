@@ -51,6 +51,17 @@ macro_rules! tally {
                 Counts { pixels, template, non_finite_pixels: 0, $($report: tally!(@report $kind, counters.$name, points),)* }
             }
 
+            /// Those of a whole whose parts have these; means are weighted by surface points.
+            pub(crate) fn of_parts(parts: &[&Counts]) -> Counts {
+                let points: f64 = parts.iter().map(|part| part.surface_points as f64).sum::<f64>().max(1.0);
+                Counts {
+                    pixels: parts.iter().map(|part| part.pixels).sum(),
+                    template: parts.iter().map(|part| part.template).max().unwrap_or(0),
+                    non_finite_pixels: parts.iter().map(|part| part.non_finite_pixels).sum(),
+                    $($report: tally!(@join $kind, parts, $report, points),)*
+                }
+            }
+
             /// All numbers with their names.
             pub fn values(&self) -> Vec<(&'static str, f64)> {
                 vec![
@@ -61,6 +72,10 @@ macro_rules! tally {
                 ]
             }
         }
+    };
+    (@join sum, $parts:ident, $report:ident, $points:ident) => { $parts.iter().map(|part| part.$report).sum() };
+    (@join mean, $parts:ident, $report:ident, $points:ident) => {
+        $parts.iter().map(|part| part.$report * part.surface_points as f64).sum::<f64>() / $points
     };
     (@type sum) => { u64 };
     (@type mean) => { f64 };

@@ -72,7 +72,7 @@ pub use data::masks::Masks;
 pub use data::picture::Picture;
 pub use data::rays::RayList;
 pub use data::visibility::Visibility;
-pub use device::{Choice, Device, DeviceReport, UnknownDevice, devices};
+pub use device::{Choice, Device, DeviceList, DeviceReport, UnknownDevice, devices};
 pub use error::RenderError;
 pub use footprint::Cone;
 pub use observer::{Observer, Progress, Unobserved};
@@ -80,7 +80,7 @@ pub use plan::{BytesPerRay, Plan};
 pub use prepared::{PreparedGeometry, PreparedScene};
 pub use probes::{GivenPoints, PointVisibility, Probes};
 pub use render_context::{RenderContext, Sampling};
-pub use renderer::{Frame, Renderer, render_on, render_on_with, visibility_on};
+pub use renderer::{Frame, Renderer, Worker, render_on, render_on_with, render_together, visibility_on};
 pub use settings::{
     Acceleration, AmbientSource, Crop, Filter, Glass, Lookup, Mode, Quality, Setting, SettingSet, Settings,
     ShadowTests, Sharing, ShortTests, Step, UnknownCrop, UnknownStep,

@@ -44,6 +44,14 @@ macro_rules! stages {
                 }
             }
 
+            /// The sums of the seconds of stages.
+            pub(crate) fn of_parts<'a>(parts: impl Iterator<Item = &'a Seconds>) -> Seconds {
+                parts.fold(Seconds::default(), |mut sum, part| {
+                    $(sum.$name += part.$name;)*
+                    sum
+                })
+            }
+
             /// The seconds of one stage, mutable.
             #[doc(hidden)]
             pub fn of_mut(&mut self, stage: Stage) -> &mut f64 {

@@ -1,6 +1,7 @@
 //! Where an image is computed.
 
 mod choice;
+mod list;
 pub(crate) mod report;
 
 use std::fmt;
@@ -8,6 +9,7 @@ use std::str::FromStr;
 
 pub use choice::Choice;
 pub(crate) use choice::Chosen;
+pub use list::DeviceList;
 pub(crate) use report::cpu_name;
 pub use report::{DeviceReport, devices};
 
@@ -23,12 +25,26 @@ pub enum Device {
     /// A CUDA device: the first that works, or the one with this number. The driver lists the fastest first and, if
     /// CUDA_VISIBLE_DEVICES is set, only the devices it names.
     Cuda(Option<u32>),
+    /// Several, which render bands of one picture. It is the same picture.
+    Several(DeviceList),
 }
 
 /// A word that is not the name of a device.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown device '{0}': choose auto, cpu, cuda or cuda:N")]
+#[error(
+    "unknown device '{0}': choose auto, cpu, cuda, cuda:N, or several: cuda:all, or a list such as cuda:0,1 or cuda:all,cpu"
+)]
 pub struct UnknownDevice(pub String);
+
+impl Device {
+    /// The number of a CUDA device, if it is known.
+    pub(crate) fn number(self) -> Option<u32> {
+        match self {
+            Device::Cuda(number) => number,
+            _ => None,
+        }
+    }
+}
 
 impl FromStr for Device {
     type Err = UnknownDevice;
@@ -39,6 +55,9 @@ impl FromStr for Device {
             "auto" => Ok(Device::Auto),
             "cpu" => Ok(Device::Cpu),
             "cuda" => Ok(Device::Cuda(None)),
+            _ if word == "cuda:all" || word.contains(',') => {
+                DeviceList::read(word).map(Device::Several).ok_or_else(unknown)
+            }
             _ => {
                 let number = word.strip_prefix("cuda:").ok_or_else(unknown)?;
                 Ok(Device::Cuda(Some(number.parse().map_err(|_| unknown())?)))
@@ -54,6 +73,7 @@ impl fmt::Display for Device {
             Device::Cpu => f.write_str("cpu"),
             Device::Cuda(None) => f.write_str("cuda"),
             Device::Cuda(Some(number)) => write!(f, "cuda:{number}"),
+            Device::Several(list) => list.fmt(f),
         }
     }
 }

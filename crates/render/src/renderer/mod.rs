@@ -7,6 +7,7 @@ mod frame;
 mod picture;
 mod report;
 mod resolve;
+mod several;
 
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -35,8 +36,10 @@ use crate::shadow::rows::KnownRows;
 pub use frame::Frame;
 use picture::picture_on;
 use resolve::Resolved;
+use several::Several;
+pub use several::{Worker, render_together};
 
-/// Renders scenes on one device.
+/// Renders scenes on one device, or on several.
 pub struct Renderer {
     pool: ThreadPool,
     engine: Engine,
@@ -50,6 +53,8 @@ enum Engine {
     Cpu,
     /// A device and its backend. Images are rendered one after another: a device has one template in constant memory, and one set of counters.
     Cuda(Arc<Driver>, Box<Mutex<Cuda<Driver>>>),
+    /// A renderer for each of several devices.
+    Several(Several),
 }
 
 impl Renderer {
@@ -85,6 +90,7 @@ impl Renderer {
         let engine = match choice.chosen {
             Chosen::Cpu => Engine::Cpu,
             Chosen::Cuda(driver) => Engine::Cuda(Arc::clone(&driver), Box::new(Mutex::new(Cuda::new(driver)))),
+            Chosen::Several(choices) => Engine::Several(Several::new(choices, pool.current_num_threads())?),
         };
         Ok(Renderer { pool, engine, preparations: Preparations::default(), rows: Arc::default() })
     }
@@ -152,6 +158,7 @@ impl Renderer {
         match &self.engine {
             Engine::Cpu => Cpu.check_structure(acceleration),
             Engine::Cuda(device, _) => gpu::check_structure(&**device, acceleration),
+            Engine::Several(several) => several.each(|renderer| renderer.check_structure(acceleration)),
         }
     }
 
@@ -161,6 +168,8 @@ impl Renderer {
             Engine::Cpu => Budget::new(settings.memory_limit),
             // The limit is that of the device's own memory.
             Engine::Cuda(..) => Budget::default(),
+            Engine::Several(several) if several.has_cpu() => Budget::new(settings.memory_limit),
+            Engine::Several(_) => Budget::default(),
         }
     }
 
@@ -181,6 +190,7 @@ impl Renderer {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 picture_on(&*cuda, None, &self.rows, scene, settings, observer)
             }
+            Engine::Several(several) => several.render(&mut MeshCache::new(), scene, settings, observer),
         })
     }
 
@@ -200,13 +210,14 @@ impl Renderer {
         settings: &Settings,
         observer: &dyn Observer,
     ) -> Result<PointVisibility, RenderError> {
-        let points = GivenPoints::new(scene, points, normals)?;
+        let given = GivenPoints::new(scene, points, normals)?;
         self.pool.install(|| match &self.engine {
-            Engine::Cpu => points_on(&Cpu, &self.rows, &points, settings, observer),
+            Engine::Cpu => points_on(&Cpu, &self.rows, &given, settings, observer),
             Engine::Cuda(_, cuda) => {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
-                points_on(&*cuda, &self.rows, &points, settings, observer)
+                points_on(&*cuda, &self.rows, &given, settings, observer)
             }
+            Engine::Several(several) => several.first(observer).visibility(scene, points, normals, settings, observer),
         })
     }
 
@@ -239,7 +250,35 @@ impl Renderer {
                 let cache = cache.device(cuda.pool().runtime().id());
                 picture_on(&*cuda, Some(cache), &self.rows, scene, settings, observer)
             }
+            Engine::Several(several) => several.render(cache, scene, settings, observer),
         })
+    }
+}
+
+impl Worker for Renderer {
+    fn name(&self) -> String {
+        match &self.engine {
+            Engine::Cpu => Cpu.name(),
+            Engine::Cuda(driver, _) => format!("{} (cuda:{})", driver.gpu().name, driver.number()),
+            Engine::Several(several) => several.name(),
+        }
+    }
+
+    fn id(&self) -> Option<u64> {
+        match &self.engine {
+            Engine::Cuda(driver, _) => Some(driver.id()),
+            Engine::Cpu | Engine::Several(_) => None,
+        }
+    }
+
+    fn render(
+        &self,
+        cache: &mut MeshCache,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        self.render_with(cache, scene, settings, observer)
     }
 }
 

@@ -14,12 +14,12 @@ use lightmesh_memory::Budget;
 use super::frame::Frame;
 use super::report::{self, DeviceFacts};
 use super::resolve::Resolved;
-use crate::backend::Backend;
 use crate::backend::stage_runner::StageRunner;
+use crate::backend::{Backend, Cpu};
 use crate::cache::Cache;
 use crate::data::picture::Picture;
 use crate::error::RenderError;
-use crate::observer::Observer;
+use crate::observer::{Observer, Unobserved};
 use crate::passes::Passes;
 use crate::plan::Plan;
 use crate::prepared::PreparedScene;
@@ -53,6 +53,20 @@ pub(super) fn picture_on<B: Backend>(
     let seconds = start.elapsed().as_secs_f64();
     let stats = report::stats(&context, &resolved, DeviceFacts::of(backend), rows_at_once, seconds);
     crop(develop(picture, &resolved, stats), settings.crop)
+}
+
+/// An image of which nothing is finished.
+pub(super) fn unfinished(scene: &PreparedScene, settings: &Settings) -> Result<lightmesh_image::Frame, RenderError> {
+    let open = without_background(scene, settings);
+    let scene = open.as_ref().unwrap_or(scene);
+    let resolved = Resolved::new(scene, settings, &Unobserved)?;
+    let rows = 0..resolved.plan.size[1];
+    let picture = Picture::planned(&resolved.plan, [rows.clone(), rows]);
+    let context = resolved.context(&Unobserved);
+    let stats = report::stats(&context, &resolved, DeviceFacts::of(&Cpu), 0, 0.0);
+    let image = develop(picture, &resolved, stats).image;
+    let crop = settings.crop.unwrap_or(Crop::new([0, 0], settings.size));
+    Ok(image.cropped(crop.first, crop.size).expect("the window has all pixels of the crop"))
 }
 
 /// The scene for a transparent image. Where the camera sees nothing, that has nothing; mirrors still reflect the environment.

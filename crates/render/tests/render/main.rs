@@ -37,6 +37,7 @@ mod seen_lights;
 mod shading;
 mod shadow_rays;
 mod textures;
+mod together;
 mod transmissive;
 mod walls;
 

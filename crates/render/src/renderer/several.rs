@@ -1,0 +1,438 @@
+//! One image on several devices: bands of rows from a queue.
+//!
+//! A band is a crop of the image, and crops have the bytes of the image: so it does not matter who renders which, nor how they are cut. Each device
+//! takes half of what it could do of the rest, by its speed so far, so that all end together. What it knows of light points and gathered light it
+//! keeps from band to band. The rows of a device that fails go to the others.
+
+use std::collections::HashSet;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::thread;
+use std::time::Instant;
+
+use super::Renderer;
+use super::frame::Frame;
+use super::picture::unfinished;
+use crate::cache::MeshCache;
+use crate::counters::Counts;
+use crate::device::Choice;
+use crate::error::RenderError;
+use crate::observer::{Observer, Progress};
+use crate::prepared::PreparedScene;
+use crate::settings::{Crop, Setting, Settings};
+use crate::stage::Seconds;
+use crate::stats::MemoryStats;
+use crate::sync::locked;
+
+/// Bands of fewer rows would mostly repeat those around them.
+const MIN_ROWS: u32 = 64;
+
+/// What renders bands.
+pub trait Worker: Sync {
+    /// What it is called.
+    fn name(&self) -> String;
+
+    /// The id of its device; `None`: the host.
+    fn id(&self) -> Option<u64>;
+
+    /// Renders a band.
+    ///
+    /// # Errors
+    /// As [`Renderer::render_with`].
+    fn render(
+        &self,
+        cache: &mut MeshCache,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError>;
+}
+
+/// A renderer for each of several devices.
+pub(super) struct Several {
+    renderers: Vec<Renderer>,
+}
+
+impl Several {
+    /// On devices that are ready, which share so many threads.
+    pub(super) fn new(choices: Vec<Choice>, threads: usize) -> Result<Several, RenderError> {
+        let share = threads.div_ceil(choices.len().max(1)).max(2);
+        let renderers = choices.into_iter().map(|choice| Renderer::on(choice, Some(share)));
+        Ok(Several { renderers: renderers.collect::<Result<_, _>>()? })
+    }
+
+    pub(super) fn has_cpu(&self) -> bool {
+        self.renderers.iter().any(|renderer| renderer.id().is_none())
+    }
+
+    /// What they are called.
+    pub(super) fn name(&self) -> String {
+        names(&self.workers())
+    }
+
+    fn workers(&self) -> Vec<&dyn Worker> {
+        self.renderers.iter().map(|renderer| renderer as &dyn Worker).collect()
+    }
+
+    /// Does something with each until an error.
+    pub(super) fn each(&self, check: impl Fn(&Renderer) -> Result<(), RenderError>) -> Result<(), RenderError> {
+        self.renderers.iter().try_for_each(check)
+    }
+
+    /// The first, which does what is not shared.
+    pub(super) fn first(&self, observer: &dyn Observer) -> &Renderer {
+        let first = &self.renderers[0];
+        observer.note(&format!("points are computed on one device: {}", first.name()));
+        first
+    }
+
+    /// Renders one image on all of them.
+    pub(super) fn render(
+        &self,
+        cache: &mut MeshCache,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        render_together(&self.workers(), cache, scene, settings, observer)
+    }
+}
+
+/// Renders one image by several workers.
+///
+/// # Errors
+/// As [`Renderer::render_with`]; that of the last device if all have failed.
+pub fn render_together(
+    workers: &[&dyn Worker],
+    cache: &mut MeshCache,
+    scene: &PreparedScene,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<Frame, RenderError> {
+    let start = Instant::now();
+    let whole = settings.crop.unwrap_or(Crop::new([0, 0], settings.size));
+    if workers.len() == 1 || whole.size[1] == 0 {
+        return workers[0].render(cache, scene, settings, observer);
+    }
+    let together = Together::new(workers.len(), whole.size[1], observer);
+    let ids: Vec<Option<u64>> = workers.iter().map(|worker| worker.id()).collect();
+    let caches = cache.parted(&ids);
+    let job = Job { scene, settings, whole, together: &together };
+    let (bands, caches): (Vec<Vec<Band>>, Vec<MeshCache>) = thread::scope(|scope| {
+        let begin = |((number, worker), cache)| scope.spawn(move || job.work(number, worker, cache));
+        let working: Vec<_> = workers.iter().copied().enumerate().zip(caches).map(begin).collect();
+        let join = |thread: thread::ScopedJoinHandle<_>| {
+            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        };
+        working.into_iter().map(join).unzip()
+    });
+    cache.unite(caches);
+    let mut bands: Vec<Band> = bands.into_iter().flatten().collect();
+    bands.sort_by_key(|band| band.first);
+    let mut frame = job.joined(bands, together.error())?;
+    frame.stats.device.name = names(workers);
+    frame.stats.seconds.render = start.elapsed().as_secs_f64();
+    if frame.stats.finished_rows.is_none() {
+        observer.progress(Progress { done: 1.0, seconds: start.elapsed().as_secs_f64(), left: Some(0.0) });
+    }
+    Ok(frame)
+}
+
+fn names(workers: &[&dyn Worker]) -> String {
+    workers.iter().map(|worker| worker.name()).collect::<Vec<_>>().join(", ")
+}
+
+/// A finished band, or the finished rows of one that was stopped.
+struct Band {
+    /// Its first row in what is rendered.
+    first: u32,
+    frame: Frame,
+}
+
+impl Band {
+    fn end(&self) -> u32 {
+        self.first + self.frame.finished_rows()
+    }
+}
+
+/// The image that all workers work on.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    scene: &'a PreparedScene,
+    settings: &'a Settings,
+    /// What is rendered of the image.
+    whole: Crop,
+    together: &'a Together<'a>,
+}
+
+impl Job<'_> {
+    /// Renders bands until there is none left, or a failure.
+    fn work(&self, number: usize, worker: &dyn Worker, mut cache: MeshCache) -> (Vec<Band>, MeshCache) {
+        let mut bands = Vec::new();
+        while let Some(rows) = self.together.take(number) {
+            let start = Instant::now();
+            let observer = ObserverOfBand { together: self.together, worker: number, rows: rows.len() as f64 };
+            let rendered =
+                worker.render(&mut cache, self.scene, &self.settings.clone().with_crop(self.crop(&rows)), &observer);
+            match rendered {
+                Ok(frame) => {
+                    self.together.finish(number, frame.finished_rows(), start.elapsed().as_secs_f64());
+                    bands.push(Band { first: rows.start, frame });
+                }
+                Err(error) => {
+                    self.together.fail(rows, worker, error);
+                    break;
+                }
+            }
+        }
+        (bands, cache)
+    }
+
+    fn crop(&self, rows: &Range<u32>) -> Crop {
+        let Crop { first: [x, y], size: [width, _] } = self.whole;
+        Crop::new([x, y + rows.start as i32], [width, rows.len() as u32])
+    }
+
+    /// The frame of all bands. Of an image that was stopped, the finished rows from the top if these are asked for.
+    fn joined(&self, mut bands: Vec<Band>, error: Option<RenderError>) -> Result<Frame, RenderError> {
+        let height = self.whole.size[1];
+        let mut finished = 0;
+        bands.retain(|band| {
+            let follows = band.first == finished;
+            finished = if follows { band.end() } else { finished };
+            follows
+        });
+        let is_part = finished < height;
+        if let Some(error) = error.filter(|_| is_part && !(self.settings.partial && finished > 0)) {
+            return Err(error);
+        }
+        if is_part && (!self.settings.partial || finished == 0) {
+            return Err(RenderError::Cancelled);
+        }
+        let stats = self.stats(&bands, is_part.then_some(finished));
+        let mut images: Vec<lightmesh_image::Frame> = Vec::new();
+        for Band { first, frame } in bands {
+            let rows = frame.finished_rows();
+            let crop = self.crop(&(first..first + rows));
+            let whole = rows == frame.image.height();
+            images.push(if whole {
+                frame.image
+            } else {
+                frame.image.cropped(crop.first, crop.size).expect("it has them")
+            });
+        }
+        if is_part {
+            let rest = self.settings.clone().with_crop(self.crop(&(finished..height)));
+            images.push(unfinished(self.scene, &rest)?);
+        }
+        let image = lightmesh_image::Frame::stacked(images).expect("bands of one image fit");
+        Ok(Frame { image, stats })
+    }
+
+    fn stats(&self, bands: &[Band], finished_rows: Option<u32>) -> crate::stats::Stats {
+        let all = || bands.iter().map(|band| &band.frame.stats);
+        let mut stats = bands[0].frame.stats.clone();
+        stats.finished_rows = finished_rows;
+        stats.settings.crop = self.settings.crop.and(Some({
+            let Crop { first: [x, y], size: [width, height] } = self.whole;
+            [x.into(), y.into(), width.into(), height.into()]
+        }));
+        if all().any(|other| other.device.kind != stats.device.kind) {
+            (stats.device.kind, stats.settings.device) = ("cuda,cpu", "cuda,cpu");
+        }
+        stats.settings.rows_per_band = all().map(|stats| stats.settings.rows_per_band).max().unwrap_or(0);
+        stats.counts = Counts::of_parts(&all().map(|stats| &stats.counts).collect::<Vec<_>>());
+        stats.seconds = Seconds::of_parts(all().map(|stats| &stats.seconds));
+        stats.memory = MemoryStats::now(all().map(|stats| stats.memory.device_peak_bytes).max().unwrap_or(0));
+        stats
+    }
+}
+
+/// The queue of rows, and what is told of all bands.
+struct Together<'a> {
+    rows: u32,
+    start: Instant,
+    state: Mutex<State>,
+    changed: Condvar,
+    stopped: AtomicBool,
+    observer: &'a dyn Observer,
+}
+
+struct State {
+    /// The first row that nobody has taken.
+    next: u32,
+    /// Rows that failed.
+    returned: Vec<Range<u32>>,
+    /// Bands that are being rendered.
+    running: usize,
+    workers: Vec<Known>,
+    /// Workers that have not failed.
+    left: usize,
+    error: Option<RenderError>,
+    /// What was told.
+    texts: HashSet<String>,
+    /// The share that was told.
+    told: f64,
+}
+
+/// What is known of a worker.
+#[derive(Clone, Copy, Default)]
+struct Known {
+    rows: f64,
+    seconds: f64,
+    /// Rows of the band in progress that are done.
+    current: f64,
+}
+
+impl Known {
+    fn speed(&self) -> Option<f64> {
+        (self.seconds > 0.0).then(|| self.rows / self.seconds)
+    }
+}
+
+impl<'a> Together<'a> {
+    fn new(workers: usize, rows: u32, observer: &'a dyn Observer) -> Together<'a> {
+        let state = State {
+            next: 0,
+            returned: Vec::new(),
+            running: 0,
+            workers: vec![Known::default(); workers],
+            left: workers,
+            error: None,
+            texts: HashSet::new(),
+            told: 0.0,
+        };
+        let (changed, stopped) = (Condvar::new(), AtomicBool::new(false));
+        Together { rows, start: Instant::now(), state: Mutex::new(state), changed, stopped, observer }
+    }
+
+    /// The next band of a worker; waits while those that others have may come back. `None` if there is nothing left, or all stop.
+    fn take(&self, worker: usize) -> Option<Range<u32>> {
+        let mut state = locked(&self.state);
+        loop {
+            if self.cancelled() {
+                return None;
+            }
+            let rows = state.returned.pop().or_else(|| state.cut(worker, self.rows));
+            if rows.is_some() {
+                state.running += 1;
+                return rows;
+            }
+            if state.running == 0 {
+                return None;
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn finish(&self, worker: usize, rows: u32, seconds: f64) {
+        let mut state = locked(&self.state);
+        let known = &mut state.workers[worker];
+        *known = Known { rows: known.rows + f64::from(rows), seconds: known.seconds + seconds, current: 0.0 };
+        state.running -= 1;
+        self.changed.notify_all();
+    }
+
+    /// A worker has failed. If its device has, others take its rows; all stop if none is left, or the image is at fault.
+    fn fail(&self, rows: Range<u32>, worker: &dyn Worker, error: RenderError) {
+        let mut state = locked(&self.state);
+        state.running -= 1;
+        state.left -= 1;
+        if is_of_device(&error) && state.left > 0 {
+            let rows_of_it = rows.len();
+            state.returned.push(rows);
+            drop(state);
+            let name = worker.name();
+            self.observer.note(&format!(
+                "{name} has failed; other devices take its {rows_of_it} rows, and render the rest: {error}"
+            ));
+        } else {
+            // What ends all is told rather than that they were stopped for it.
+            if state.error.is_none() || !matches!(error, RenderError::Cancelled) {
+                state.error = Some(error);
+            }
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+        self.changed.notify_all();
+    }
+
+    fn error(&self) -> Option<RenderError> {
+        locked(&self.state).error.take()
+    }
+
+    fn cancelled(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed) || self.observer.cancelled()
+    }
+
+    /// So many rows of a worker's band are done.
+    fn progress(&self, worker: usize, rows: f64) {
+        let mut state = locked(&self.state);
+        state.workers[worker].current = rows;
+        let rows: f64 = state.workers.iter().map(|known| known.rows + known.current).sum();
+        state.told = (rows / f64::from(self.rows)).clamp(state.told, 1.0);
+        let (done, seconds) = (state.told, self.start.elapsed().as_secs_f64());
+        let left = (done > 0.0).then(|| seconds * (1.0 - done) / done);
+        self.observer.progress(Progress { done, seconds, left });
+    }
+
+    /// Whether a text was not told before.
+    fn is_new(&self, text: &str) -> bool {
+        locked(&self.state).texts.insert(text.to_owned())
+    }
+}
+
+impl State {
+    /// Half of what a worker would do of the rest if all went on as they did.
+    fn cut(&mut self, worker: usize, rows: u32) -> Option<Range<u32>> {
+        let (first, left) = (self.next, rows - self.next);
+        let known: Vec<f64> = self.workers.iter().filter_map(Known::speed).collect();
+        let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
+        let speed = |known: &Known| known.speed().unwrap_or(if mean > 0.0 { mean } else { 1.0 });
+        let share = speed(&self.workers[worker]) / self.workers.iter().map(speed).sum::<f64>();
+        let wanted = (0.5 * share * f64::from(left)).ceil() as u32;
+        // The last one is no smaller than others.
+        let count = wanted.max(MIN_ROWS).min(left);
+        let count = if left - count < MIN_ROWS / 2 { left } else { count };
+        self.next += count;
+        (count > 0).then_some(first..first + count)
+    }
+}
+
+/// Whether another device may do what failed.
+fn is_of_device(error: &RenderError) -> bool {
+    let fails = matches!(
+        error,
+        RenderError::Device { .. } | RenderError::DeviceFault { .. } | RenderError::DeviceMemory { .. }
+    );
+    fails || error.is_of_memory()
+}
+
+/// Hears of a band, and tells of the whole.
+struct ObserverOfBand<'a> {
+    together: &'a Together<'a>,
+    worker: usize,
+    rows: f64,
+}
+
+impl Observer for ObserverOfBand<'_> {
+    fn progress(&self, progress: Progress) {
+        self.together.progress(self.worker, self.rows * progress.done);
+    }
+
+    fn report_default(&self, setting: Setting, text: &str) {
+        if self.together.is_new(text) {
+            self.together.observer.report_default(setting, text);
+        }
+    }
+
+    fn note(&self, text: &str) {
+        if self.together.is_new(text) {
+            self.together.observer.note(text);
+        }
+    }
+
+    fn cancelled(&self) -> bool {
+        self.together.cancelled()
+    }
+}
