@@ -28,9 +28,9 @@ use crate::watch::{self, Callback, Cancel, Watch, Wishes};
 const NO_LIGHTS: &str = "the scene has no lights, so there is no visibility of any: the array has no columns; give lights, or a sky with a sun \
                          (lights, sky)";
 
-/// Renders scenes on one `device`: "auto", "cpu", "cuda" or "cuda:1", with so many `threads` of the CPU, or all. Can be used by several threads at
-/// once; the interpreter is free while it works. A process that is forked uses it with threads of its own, if the device is the CPU. Raises
-/// `DeviceError` if the device cannot be used.
+/// Renders scenes on a `device`: "auto", "cpu", "cuda" or "cuda:1", or on several: "cuda:all", "cuda:0,1" or "cuda:all,cpu", with so many `threads` of
+/// the CPU, or all. Can be used by several threads at once; the interpreter is free while it works. A process that is forked uses it with threads of its
+/// own, if the device is the CPU. Raises `DeviceError` if the device cannot be used.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Renderer {
     machine: PerProcess<Machine>,

@@ -43,7 +43,7 @@ pub struct SceneStats {
 /// The device.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceStats {
-    /// `cpu` or `cuda`.
+    /// `cpu`, `cuda`, or `cuda,cpu` of several.
     pub kind: &'static str,
     /// The vendor's name for the device.
     pub name: String,

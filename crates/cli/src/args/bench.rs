@@ -64,7 +64,7 @@ pub(crate) struct SuiteArgs {
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub(crate) budget: Option<Budget>,
 
-    /// Measure on auto (the CPU and, if one works, a GPU), cpu, cuda or cuda:N
+    /// Measure on auto (the CPU and, if one works, a GPU), cpu, cuda, cuda:N or several such as cuda:all
     #[arg(long, value_name = "DEVICE", default_value = "auto")]
     pub(crate) device: Device,
 

@@ -38,7 +38,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let scene = open(scene, &plan.load_options(), &plan.files.outputs, &watcher)?;
     let range = plan.range(&scene)?;
     let load = start.elapsed().as_secs_f64();
-    if matches!(device, Device::Auto | Device::Cuda(None)) {
+    if matches!(device, Device::Auto | Device::Cuda(None) | Device::Several(_)) {
         watcher.note(&format!("device {device}: using {using}"));
     }
     if let Some(crease) = plan.smooth.filter(|_| args.verbose) {

@@ -48,7 +48,7 @@ fn values_of_another_form_are_shown_the_form() {
         (&["--threads", "0"], "0 is not in 1..=1024"),
         (&["--grid", "5x5"], "write NXxNYxNZ"),
         (&["--memory-limit", "lots"], "write a number of bytes"),
-        (&["--device", "gpu"], "choose auto, cpu, cuda or cuda:N"),
+        (&["--device", "gpu"], "choose auto, cpu, cuda, cuda:N, or several"),
         (&["--seed", "-1"], "invalid value '-1' for '--seed <S>'"),
         (&["--bounces", "x"], "invalid value 'x' for '--bounces <N>'"),
     ];

@@ -104,7 +104,7 @@ class SceneStats(TypedDict):
 class DeviceStats(TypedDict):
     """The device that rendered it."""
 
-    kind: Literal["cpu", "cuda"]
+    kind: Literal["cpu", "cuda", "cuda,cpu"]
     name: str
 
 

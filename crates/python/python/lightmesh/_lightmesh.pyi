@@ -610,9 +610,9 @@ class SunHours:
 
 @final
 class Renderer:
-    """Renders scenes on one `device`: "auto", "cpu", "cuda" or "cuda:1", with so many `threads` of the CPU, or all. Can be used by several threads at
-    once; the interpreter is free while it works. A process that is forked uses it with threads of its own, if the device is the CPU. Raises
-    `DeviceError` if the device cannot be used."""
+    """Renders scenes on a `device`: "auto", "cpu", "cuda" or "cuda:1", or on several: "cuda:all", "cuda:0,1" or "cuda:all,cpu", with so many `threads` of
+    the CPU, or all. Can be used by several threads at once; the interpreter is free while it works. A process that is forked uses it with threads of its
+    own, if the device is the CPU. Raises `DeviceError` if the device cannot be used."""
 
     def __new__(cls, device: str = "auto", *, threads: int | None = None) -> Self: ...
     @property

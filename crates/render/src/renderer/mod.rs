@@ -37,7 +37,7 @@ pub use frame::Frame;
 use picture::picture_on;
 use resolve::Resolved;
 use several::Several;
-pub use several::{Worker, render_together};
+pub use several::{Speeds, Worker, render_together};
 
 /// Renders scenes on one device, or on several.
 pub struct Renderer {

@@ -1,8 +1,9 @@
 //! One image on several devices: bands of rows from a queue.
 //!
 //! A band is a crop of the image, and crops have the bytes of the image: so it does not matter who renders which, nor how they are cut. Each device
-//! takes half of what it could do of the rest, by its speed so far, so that all end together. What it knows of light points and gathered light it
-//! keeps from band to band. The rows of a device that fails go to the others.
+//! takes half of what it could do of the rest, by its speed so far, so that all end together; one that would take longer for a band than the others
+//! for all that is left takes none. What it knows of light points and gathered light it keeps from band to band. The rows of a device that fails go
+//! to the others.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -25,8 +26,11 @@ use crate::stage::Seconds;
 use crate::stats::MemoryStats;
 use crate::sync::locked;
 
-/// Bands of fewer rows would mostly repeat those around them.
+/// Bands of fewer rows are rendered by one device, since they mostly repeat those around them.
 const MIN_ROWS: u32 = 64;
+/// The first band of a device whose speed is not known is one part in this many, of so many rows at least.
+const FIRST: u32 = 64;
+const MIN_FIRST: u32 = 8;
 
 /// What renders bands.
 pub trait Worker: Sync {
@@ -49,9 +53,14 @@ pub trait Worker: Sync {
     ) -> Result<Frame, RenderError>;
 }
 
+/// How fast workers rendered before: pixels per second.
+#[derive(Debug, Default)]
+pub struct Speeds(Mutex<Vec<Option<f64>>>);
+
 /// A renderer for each of several devices.
 pub(super) struct Several {
     renderers: Vec<Renderer>,
+    speeds: Speeds,
 }
 
 impl Several {
@@ -59,7 +68,7 @@ impl Several {
     pub(super) fn new(choices: Vec<Choice>, threads: usize) -> Result<Several, RenderError> {
         let share = threads.div_ceil(choices.len().max(1)).max(2);
         let renderers = choices.into_iter().map(|choice| Renderer::on(choice, Some(share)));
-        Ok(Several { renderers: renderers.collect::<Result<_, _>>()? })
+        Ok(Several { renderers: renderers.collect::<Result<_, _>>()?, speeds: Speeds::default() })
     }
 
     pub(super) fn has_cpu(&self) -> bool {
@@ -95,19 +104,18 @@ impl Several {
         settings: &Settings,
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
-        render_together(&self.workers(), cache, scene, settings, observer)
+        render_together(&self.workers(), &self.speeds, (cache, scene, settings), observer)
     }
 }
 
-/// Renders one image by several workers.
+/// Renders one image by several workers, whose speeds are kept for the next.
 ///
 /// # Errors
 /// As [`Renderer::render_with`]; that of the last device if all have failed.
 pub fn render_together(
     workers: &[&dyn Worker],
-    cache: &mut MeshCache,
-    scene: &PreparedScene,
-    settings: &Settings,
+    speeds: &Speeds,
+    (cache, scene, settings): (&mut MeshCache, &PreparedScene, &Settings),
     observer: &dyn Observer,
 ) -> Result<Frame, RenderError> {
     let start = Instant::now();
@@ -115,7 +123,10 @@ pub fn render_together(
     if workers.len() == 1 || whole.size[1] == 0 {
         return workers[0].render(cache, scene, settings, observer);
     }
-    let together = Together::new(workers.len(), whole.size[1], observer);
+    let mut known = locked(&speeds.0).clone();
+    known.resize(workers.len(), None);
+    let width = f64::from(whole.size[0].max(1));
+    let together = Together::new(known.iter().map(|speed| speed.map(|speed| speed / width)), whole.size[1], observer);
     let ids: Vec<Option<u64>> = workers.iter().map(|worker| worker.id()).collect();
     let caches = cache.parted(&ids);
     let job = Job { scene, settings, whole, together: &together };
@@ -128,6 +139,7 @@ pub fn render_together(
         working.into_iter().map(join).unzip()
     });
     cache.unite(caches);
+    *locked(&speeds.0) = together.speeds().into_iter().map(|speed| speed.map(|speed| speed * width)).collect();
     let mut bands: Vec<Band> = bands.into_iter().flatten().collect();
     bands.sort_by_key(|band| band.first);
     let mut frame = job.joined(bands, together.error())?;
@@ -181,7 +193,7 @@ impl Job<'_> {
                     bands.push(Band { first: rows.start, frame });
                 }
                 Err(error) => {
-                    self.together.fail(rows, worker, error);
+                    self.together.fail(rows, (number, worker), error);
                     break;
                 }
             }
@@ -210,7 +222,8 @@ impl Job<'_> {
         if is_part && (!self.settings.partial || finished == 0) {
             return Err(RenderError::Cancelled);
         }
-        let stats = self.stats(&bands, is_part.then_some(finished));
+        let mut stats = self.stats(&bands, is_part.then_some(finished));
+        stats.counts.pixels = u64::from(self.whole.size[0]) * u64::from(finished);
         let mut images: Vec<lightmesh_image::Frame> = Vec::new();
         for Band { first, frame } in bands {
             let rows = frame.finished_rows();
@@ -279,26 +292,30 @@ struct State {
 /// What is known of a worker.
 #[derive(Clone, Copy, Default)]
 struct Known {
+    /// Rows per second in earlier images.
+    before: Option<f64>,
     rows: f64,
     seconds: f64,
     /// Rows of the band in progress that are done.
     current: f64,
+    failed: bool,
 }
 
 impl Known {
     fn speed(&self) -> Option<f64> {
-        (self.seconds > 0.0).then(|| self.rows / self.seconds)
+        if self.seconds > 0.0 { Some(self.rows / self.seconds) } else { self.before }
     }
 }
 
 impl<'a> Together<'a> {
-    fn new(workers: usize, rows: u32, observer: &'a dyn Observer) -> Together<'a> {
+    fn new(speeds: impl Iterator<Item = Option<f64>>, rows: u32, observer: &'a dyn Observer) -> Together<'a> {
+        let workers: Vec<Known> = speeds.map(|before| Known { before, ..Known::default() }).collect();
         let state = State {
             next: 0,
             returned: Vec::new(),
             running: 0,
-            workers: vec![Known::default(); workers],
-            left: workers,
+            left: workers.len(),
+            workers,
             error: None,
             texts: HashSet::new(),
             told: 0.0,
@@ -307,7 +324,7 @@ impl<'a> Together<'a> {
         Together { rows, start: Instant::now(), state: Mutex::new(state), changed, stopped, observer }
     }
 
-    /// The next band of a worker; waits while those that others have may come back. `None` if there is nothing left, or all stop.
+    /// The next band of a worker; waits while others work, whose rows may come back. `None` if there is nothing left, or all stop.
     fn take(&self, worker: usize) -> Option<Range<u32>> {
         let mut state = locked(&self.state);
         loop {
@@ -319,7 +336,7 @@ impl<'a> Together<'a> {
                 state.running += 1;
                 return rows;
             }
-            if state.running == 0 {
+            if state.running == 0 && state.next == self.rows {
                 return None;
             }
             state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
@@ -329,16 +346,18 @@ impl<'a> Together<'a> {
     fn finish(&self, worker: usize, rows: u32, seconds: f64) {
         let mut state = locked(&self.state);
         let known = &mut state.workers[worker];
-        *known = Known { rows: known.rows + f64::from(rows), seconds: known.seconds + seconds, current: 0.0 };
+        let (rows, seconds) = (known.rows + f64::from(rows), known.seconds + seconds);
+        *known = Known { rows, seconds, current: 0.0, ..*known };
         state.running -= 1;
         self.changed.notify_all();
     }
 
     /// A worker has failed. If its device has, others take its rows; all stop if none is left, or the image is at fault.
-    fn fail(&self, rows: Range<u32>, worker: &dyn Worker, error: RenderError) {
+    fn fail(&self, rows: Range<u32>, (number, worker): (usize, &dyn Worker), error: RenderError) {
         let mut state = locked(&self.state);
         state.running -= 1;
         state.left -= 1;
+        state.workers[number].failed = true;
         if is_of_device(&error) && state.left > 0 {
             let rows_of_it = rows.len();
             state.returned.push(rows);
@@ -355,6 +374,11 @@ impl<'a> Together<'a> {
             self.stopped.store(true, Ordering::Relaxed);
         }
         self.changed.notify_all();
+    }
+
+    /// Rows per second of each.
+    fn speeds(&self) -> Vec<Option<f64>> {
+        locked(&self.state).workers.iter().map(Known::speed).collect()
     }
 
     fn error(&self) -> Option<RenderError> {
@@ -383,19 +407,30 @@ impl<'a> Together<'a> {
 }
 
 impl State {
-    /// Half of what a worker would do of the rest if all went on as they did.
+    /// The next band of a worker, if it takes one.
     fn cut(&mut self, worker: usize, rows: u32) -> Option<Range<u32>> {
         let (first, left) = (self.next, rows - self.next);
-        let known: Vec<f64> = self.workers.iter().filter_map(Known::speed).collect();
-        let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
-        let speed = |known: &Known| known.speed().unwrap_or(if mean > 0.0 { mean } else { 1.0 });
-        let share = speed(&self.workers[worker]) / self.workers.iter().map(speed).sum::<f64>();
-        let wanted = (0.5 * share * f64::from(left)).ceil() as u32;
+        let wanted = match self.workers[worker].speed() {
+            None => (rows / FIRST).max(MIN_FIRST),
+            Some(speed) => self.share(speed, worker, left)?,
+        };
         // The last one is no smaller than others.
-        let count = wanted.max(MIN_ROWS).min(left);
-        let count = if left - count < MIN_ROWS / 2 { left } else { count };
+        let count = if left < wanted + MIN_ROWS / 2 { left } else { wanted };
         self.next += count;
         (count > 0).then_some(first..first + count)
+    }
+
+    /// Half of what a worker would do of the rest if all went on as they did; `None` if the others do all of it before.
+    fn share(&self, speed: f64, worker: usize, left: u32) -> Option<u32> {
+        let left = f64::from(left);
+        let others = self.workers.iter().enumerate().filter(|(number, known)| *number != worker && !known.failed);
+        // Of those whose speed is not known it is taken to be the same.
+        let others: Vec<f64> = others.map(|(_, known)| known.speed().unwrap_or(speed)).collect();
+        let (all, fastest) = (others.iter().sum::<f64>(), others.iter().copied().fold(0.0, f64::max));
+        let wanted = (0.5 * left * speed / (speed + all)).max(f64::from(MIN_ROWS)).min(left);
+        // The fastest of all is never late, so that somebody goes on.
+        let is_late = wanted / speed > (left / all).max(wanted / fastest);
+        (!is_late).then(|| wanted.ceil() as u32)
     }
 }
 

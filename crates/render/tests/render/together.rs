@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use lightmesh_render::{
     AmbientSource, Crop, Device, Frame, Lookup, MeshCache, Mode, Observer, PreparedScene, Progress, Quality,
-    RenderError, Renderer, Settings, Unobserved, Worker, render_together,
+    RenderError, Renderer, Settings, Speeds, Unobserved, Worker, render_together,
 };
 use lightmesh_scene::Scene;
 
@@ -20,7 +20,7 @@ fn settings() -> Settings {
 }
 
 fn together(workers: &[&dyn Worker], scene: &PreparedScene, settings: &Settings) -> Result<Frame, RenderError> {
-    render_together(workers, &mut MeshCache::new(), scene, settings, &Unobserved)
+    render_together(workers, &Speeds::default(), (&mut MeshCache::new(), scene, settings), &Unobserved)
 }
 
 /// A renderer whose device fails from a band on.
@@ -85,7 +85,7 @@ fn several_devices_render_the_image_of_one() {
             let all = together(workers, &prepared, &settings).unwrap();
             assert!(all.image == one.image, "{name} on {}", workers.len());
             assert_eq!(all.stats.settings.crop, one.stats.settings.crop, "{name}");
-            assert_eq!(all.stats.counts.pixels, one.stats.counts.pixels, "{name}");
+            assert_eq!(all.stats.counts.pixels as usize, one.color().len(), "{name}");
         }
     }
 }
@@ -97,9 +97,11 @@ fn what_light_points_know_goes_on_to_the_next_image() {
     let settings = settings().with_lookup(Lookup::HalfBall).with_step(4.0);
     let prepared = a.prepare(&scene, &settings, &Unobserved).unwrap();
     let mut cache = MeshCache::new();
-    let first = render_together(&[&a, &b], &mut cache, &prepared, &settings, &Unobserved).unwrap();
+    let first =
+        render_together(&[&a, &b], &Speeds::default(), (&mut cache, &prepared, &settings), &Unobserved).unwrap();
     assert!(!cache.is_empty() && first.stats.counts.long_tests > 0);
-    let again = render_together(&[&a, &b], &mut cache, &prepared, &settings, &Unobserved).unwrap();
+    let again =
+        render_together(&[&a, &b], &Speeds::default(), (&mut cache, &prepared, &settings), &Unobserved).unwrap();
     assert!(again.image == first.image && again.stats.counts.long_tests < first.stats.counts.long_tests);
 }
 
@@ -119,7 +121,13 @@ fn the_rows_of_a_device_that_fails_go_to_the_others() {
     let one = sound.render_prepared(&prepared, &settings(), &Unobserved).unwrap();
     for bands in [0, 1] {
         let (frail, notes) = (Failing::after(bands, lost), Notes::default());
-        let all = render_together(&[&frail, &sound], &mut MeshCache::new(), &prepared, &settings(), &notes).unwrap();
+        let all = render_together(
+            &[&frail, &sound],
+            &Speeds::default(),
+            (&mut MeshCache::new(), &prepared, &settings()),
+            &notes,
+        )
+        .unwrap();
         assert!(all.image == one.image);
         let notes = notes.0.into_inner().unwrap();
         let told = notes.iter().filter(|note| note.contains("a frail device") && note.contains("fell off")).count();
@@ -165,7 +173,7 @@ fn progress_is_that_of_the_whole_and_a_stop_leaves_rows_from_the_top() {
     let one = a.render_prepared(&prepared, &settings, &Unobserved).unwrap();
     let render = |settings: &Settings, share: f64| {
         let stop = Stop(share, Mutex::default());
-        let frame = render_together(&[&a, &b], &mut MeshCache::new(), &prepared, settings, &stop);
+        let frame = render_together(&[&a, &b], &Speeds::default(), (&mut MeshCache::new(), &prepared, settings), &stop);
         (frame, stop.1.into_inner().unwrap())
     };
     let (whole, told) = render(&settings, 2.0);
