@@ -15,12 +15,12 @@ use crate::Matte;
 /// where alpha is 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    pub(crate) width: u32,
-    pub(crate) height: u32,
-    pub(crate) window: Window,
-    pub(crate) color: Vec<[f32; 3]>,
-    pub(crate) alpha: Option<Vec<f32>>,
-    pub(crate) layers: Option<Layers>,
+    width: u32,
+    height: u32,
+    window: Window,
+    color: Vec<[f32; 3]>,
+    alpha: Option<Vec<f32>>,
+    layers: Option<Layers>,
 }
 
 /// Where a frame lies in an image that it is a part of, or around one.

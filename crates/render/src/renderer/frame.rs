@@ -37,7 +37,8 @@ impl Frame {
         let Crop { first: [x, y], size: [width, height] } = crop;
         let above = y.saturating_sub(self.image.window().first[1]).max(0) as u32;
         let finished = self.finished_rows().saturating_sub(above).min(height);
-        let image = self.image.cropped(crop.first, crop.size)?;
+        let is_whole = self.image.window().first == crop.first && self.size() == crop.size;
+        let image = if is_whole { self.image } else { self.image.cropped(crop.first, crop.size)? };
         let mut stats = self.stats;
         stats.settings.crop = Some([x.into(), y.into(), width.into(), height.into()]);
         stats.finished_rows = (finished < height).then_some(finished);

@@ -91,3 +91,35 @@ fn lengths_are_checked() {
     assert!(frame().with_layers(layers(7)).is_err());
     assert!(frame().with_alpha(vec![1.0; 5]).unwrap_err().to_string().contains("plane 'alpha' has 5"));
 }
+
+#[test]
+fn parts_of_an_image_become_the_image() {
+    let color: Vec<[f32; 3]> = (0..30).map(|pixel| [pixel as f32; 3]).collect();
+    let mut planes = layers(30);
+    planes.depth = (0..30).map(|pixel| pixel as f32).collect();
+    planes.object.ranks[1].share = planes.depth.clone();
+    let frame = Frame::new(3, 10, color).unwrap().with_layers(planes).unwrap().with_alpha(vec![0.5; 30]).unwrap();
+    let frame = frame.with_window([7, -2], [20, 10]);
+    let rows = |first: i32, count: u32| frame.cropped([7, first], [3, count]).unwrap();
+    assert_eq!(Frame::stacked(vec![rows(-2, 4), rows(2, 1), rows(3, 5)]), Some(frame.clone()));
+    assert_eq!(Frame::stacked(vec![frame.clone()]), Some(frame.clone()));
+    // None; a gap; the wrong order; other columns; other planes; other names.
+    let renamed = |mut part: Frame| {
+        let mut planes = part.layers().unwrap().clone();
+        planes.object.names = vec!["ball".to_owned()];
+        part = part.with_layers(planes).unwrap();
+        part
+    };
+    let bare = Frame::new(3, 1, vec![[0.0; 3]; 3]).unwrap().with_window([7, 2], [20, 10]);
+    let wrong = [
+        vec![],
+        vec![rows(-2, 4), rows(3, 5)],
+        vec![rows(2, 1), rows(-2, 4)],
+        vec![rows(-2, 4), frame.cropped([8, 2], [2, 1]).unwrap()],
+        vec![rows(-2, 4), bare],
+        vec![rows(-2, 4), renamed(rows(2, 1))],
+    ];
+    for parts in wrong {
+        assert_eq!(Frame::stacked(parts), None);
+    }
+}
