@@ -59,7 +59,7 @@ impl Renderer {
                 )));
             }
             Choice::of(Device::Cpu)
-                .and_then(|choice| Machine::new(choice, self.threads))
+                .and_then(|choice| Machine::new(choice, self.threads.or(process::threads())))
                 .map_err(IntoException::into_exception)
         })
     }
@@ -78,7 +78,7 @@ impl Renderer {
         let made = || {
             let choice = Choice::of(device)?;
             let (chosen, reason) = (choice.device.to_string(), choice.reason.clone());
-            Ok((PerProcess::new(Machine::new(choice, threads)?), chosen, reason))
+            Ok((PerProcess::new(Machine::new(choice, threads.or(process::threads()))?), chosen, reason))
         };
         let made = process::detach(py, made)?;
         let (machine, device, reason) = made.map_err(|error: RenderError| error.into_exception())?;

@@ -33,7 +33,7 @@ macro_rules! tally {
         }
 
         /// How often each event happened. Means are taken over the surface points, including those seen in mirrors.
-        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
         pub struct Counts {
             /// Pixels of the image.
             pub pixels: u64,
@@ -51,6 +51,14 @@ macro_rules! tally {
                 Counts { pixels, template, non_finite_pixels: 0, $($report: tally!(@report $kind, counters.$name, points),)* }
             }
 
+            /// Adds those of another part of the same image.
+            pub(crate) fn add(&mut self, other: &Counts) {
+                let points = [self.surface_points as f64, other.surface_points as f64];
+                self.pixels += other.pixels;
+                self.non_finite_pixels += other.non_finite_pixels;
+                $(tally!(@add $kind, self.$report, other.$report, points);)*
+            }
+
             /// All numbers with their names.
             pub fn values(&self) -> Vec<(&'static str, f64)> {
                 vec![
@@ -61,6 +69,10 @@ macro_rules! tally {
                 ]
             }
         }
+    };
+    (@add sum, $own:expr, $other:expr, $points:ident) => { $own += $other };
+    (@add mean, $own:expr, $other:expr, $points:ident) => {
+        $own = ($own * $points[0] + $other * $points[1]) / ($points[0] + $points[1]).max(1.0)
     };
     (@type sum) => { u64 };
     (@type mean) => { f64 };

@@ -25,7 +25,7 @@ macro_rules! stages {
         /// Time spent in each stage. `load`, `build` and `write` are not part of `render`. On a device the stages between
         /// `upload` and `download` are measured on the device. Geometry that was built or uploaded for an earlier image takes
         /// no time again.
-        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
         pub struct Seconds {
             /// Loading the scene.
             pub load: f64,
@@ -42,6 +42,14 @@ macro_rules! stages {
                 match stage {
                     $(Stage::$variant => self.$name,)*
                 }
+            }
+
+            /// Adds those of another part of the work.
+            pub(crate) fn add(&mut self, other: &Seconds) {
+                self.load += other.load;
+                $(self.$name += other.$name;)*
+                self.render += other.render;
+                self.write += other.write;
             }
 
             /// The seconds of one stage, mutable.
