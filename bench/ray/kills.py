@@ -34,7 +34,7 @@ import psutil
 NODES = 3
 #: What is rendered: its settings, and how many kills it is to survive.
 FILM = {"turntable": 60, "size": "320x240", "seed": 3}
-PICTURE = {"size": "160x2560"}
+PICTURE = {"size": "1280x2560"}
 SCENE = "builtin:childpark"
 #: The leader's program: rendered in a process of its own, so that it can be killed.
 LEAD = """
@@ -59,7 +59,7 @@ class Machine:
         self.cluster.add_node(num_cpus=0, object_store_memory=100_000_000, include_dashboard=False)
         self.nodes = [self.add(node_env if number == 0 else None) for number in range(nodes)]
         self.logs = Path(self.cluster.head_node.get_session_dir_path()) / "logs"
-        self.read: dict[Path, int] = {}
+        self.read: dict[str, int] = {}
 
     def add(self, env: dict[str, str] | None = None):
         more = {"env_vars": env} if env else {}
@@ -86,12 +86,17 @@ class Machine:
     def rendered(self) -> list[tuple[int, str]]:
         """What processes have begun to render since this was last asked: process and unit."""
         found = []
-        for path in sorted(self.logs.glob("worker-*.err")):
-            with open(path, "rb") as file:
-                file.seek(self.read.get(path, 0))
-                text = file.read()
+        # Ray moves the logs of processes that are gone.
+        for path in sorted([*self.logs.glob("worker-*.err"), *self.logs.glob("old/worker-*.err")]):
+            try:
+                with open(path, "rb") as file:
+                    file.seek(self.read.get(path.name, 0))
+                    text = file.read()
+            except FileNotFoundError:
+                # Moved just now: it is read at its new place the next time.
+                continue
             whole = text.rfind(b"\n") + 1
-            self.read[path] = self.read.get(path, 0) + whole
+            self.read[path.name] = self.read.get(path.name, 0) + whole
             for pid, unit in re.findall(r"lightmesh\.ray INFO \S+ (\d+): rendering (.+)", text[:whole].decode()):
                 found.append((int(pid), unit))
         return found
@@ -235,7 +240,7 @@ def main() -> int:
             number += 1
             trial = Trial(machine, what, FILM if what == "film" else PICTURE, own, rng)
             kinds = [rng.choice(("worker", "worker", "node", "leader")) for _ in range(min(arguments.each, arguments.kills - sum(totals.values())))]
-            told = trial.run(kinds, rng.uniform(0, 1), (0.2, 4.0))
+            told = trial.run(kinds, rng.uniform(0, 1), (0.1, 2.0))
             totals.update(trial.killed)
             faults = trial.check(wanted[what])
             counts = collections.Counter(unit for units in trial.units.values() for unit in units)

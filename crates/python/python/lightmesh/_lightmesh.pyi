@@ -608,8 +608,8 @@ class SunHours:
 
 @final
 class Renderer:
-    """Renders scenes on one `device`: "auto", "cpu", "cuda" or "cuda:1", with so many `threads` of the CPU, or all. Can be used by several threads at
-    once; the interpreter is free while it works. A process that is forked uses it with threads of its own, if the device is the CPU. Raises
+    """Renders scenes on one `device`: "auto", "cpu", "cuda" or "cuda:1", with so many `threads` of the CPU, or as many as
+    `OMP_NUM_THREADS` says, or all. Can be used by several threads at once; the interpreter is free while it works. A process that is forked uses it with threads of its own, if the device is the CPU. Raises
     `DeviceError` if the device cannot be used."""
 
     def __new__(cls, device: str = "auto", *, threads: int | None = None) -> Self: ...

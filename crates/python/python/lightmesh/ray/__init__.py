@@ -21,4 +21,16 @@ from ._pictures import picture
 from ._report import Failure, NodeReport, Progress, Report
 from ._settings import FilmRequest, PictureRequest
 
-__all__ = ["ClusterError", "Failure", "FilesError", "FilmRequest", "NodeError", "NodeReport", "PictureRequest", "Progress", "Report", "film", "picture"]
+__all__ = [
+    "ClusterError",
+    "Failure",
+    "FilesError",
+    "FilmRequest",
+    "NodeError",
+    "NodeReport",
+    "PictureRequest",
+    "Progress",
+    "Report",
+    "film",
+    "picture",
+]

@@ -61,7 +61,7 @@ def run(own: argparse.Namespace, others: Sequence[str]) -> Report:
     """Does what the flags say."""
     scene, output, text = _parse(others)
     request = json.loads(text)
-    options = {"address": own.address, "cpus_per_actor": own.cpus_per_actor, "gpus_per_actor": own.gpus_per_actor, "actors": own.actors, "ship": own.ship}
+    options = {name: getattr(own, name) for name in ("address", "cpus_per_actor", "gpus_per_actor", "actors", "ship")}
     tell = None if own.quiet else Line()
     if output is None:
         raise SettingError("-o is needed: a file, or a pattern such as film.####.png")

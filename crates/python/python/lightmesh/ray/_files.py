@@ -7,7 +7,7 @@ import uuid
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import ray
 import ray.exceptions
@@ -59,7 +59,9 @@ class Files:
         # What was sent is compared there when the scene is opened.
         files = [] if self.ship else self.inputs
         patience = PATIENCE + sum(size for _, size, _ in files) / RATE
-        ask = [self._look.options(scheduling_strategy=on(node)).remote(files, self.output, __version__) for node in nodes]
+        # Put into the store once, whatever the number of nodes: the leader lives as long as these calls.
+        listed = cast(Any, ray.put(files))
+        ask = [self._look.options(scheduling_strategy=on(node)).remote(listed, self.output, __version__) for node in nodes]
         ready, _ = ray.wait(ask, num_returns=len(ask), timeout=patience) if ask else ([], [])
         found: list[Found] = []
         for node, call in zip(nodes, ask):

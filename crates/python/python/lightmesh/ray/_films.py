@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,7 +37,7 @@ def film(
     **request: Unpack[FilmRequest],
 ) -> Report:
     """Renders the frames of a film of `scene`, a file, to `output`, a pattern such as "film.####.png", on the cluster at `address`: the one that the
-    program is connected to, that of `RAY_ADDRESS`, or one of this machine alone.
+    program is connected to, that of `RAY_ADDRESS`, one that runs on this machine, or one of this machine alone.
 
     `frames` are those of `lightmesh render --frames`, as text or a sequence of numbers; all, unless given. Actors, at most `actors`, get
     `cpus_per_actor` and `gpus_per_actor` each, which may be parts. `ship` sends the files of the scene to nodes that lack them; without it, all nodes
@@ -74,13 +76,38 @@ def render(leader: Leader, log: _FilmLog) -> None:
         chosen = choose(leader)
         log.choose(chosen)
 
-    def take(unit: Unit, result: Result) -> None:
-        assert isinstance(unit, Frame) and isinstance(result, Written)
-        if result.content is not None:
-            log.publish(unit.number, result.content, result.files)
-        log.finished(unit.number, result.files)
+    with Recorder(log) as recorder:
+        leader.run([Frame(number, chosen) for number in log.numbers], recorder.take)
 
-    leader.run([Frame(number, chosen) for number in log.numbers], take)
+
+class Recorder:
+    """Records frames beside the leader, in their order: while the disk takes the manifest, units are handed out."""
+
+    def __init__(self, log: _FilmLog) -> None:
+        self.log = log
+        self.beside = ThreadPoolExecutor(1)
+        self.calls: deque[Future[None]] = deque()
+
+    def take(self, unit: Unit, result: Result) -> None:
+        """A frame is finished. Raises what went wrong with those before."""
+        assert isinstance(unit, Frame) and isinstance(result, Written)
+        while self.calls and self.calls[0].done():
+            self.calls.popleft().result()
+        self.calls.append(self.beside.submit(self.record, unit.number, result))
+
+    def record(self, number: int, written: Written) -> None:
+        if written.content is not None:
+            self.log.publish(number, written.content, written.files)
+        self.log.finished(number, written.files)
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        # What is finished is recorded however the run ends.
+        self.beside.shutdown(wait=True)
+        while self.calls and kind is None:
+            self.calls.popleft().result()
 
 
 def choose(leader: Leader) -> str:

@@ -1,4 +1,4 @@
-"""The leader of a run: hands units to actors, takes results, and tells of progress. It does so until all units are finished, whoever dies meanwhile."""
+"""The leader of a run: hands units to actors, takes results, and tells of progress, until all units are finished, whoever dies meanwhile."""
 
 from __future__ import annotations
 
@@ -34,6 +34,9 @@ PATIENCE = 120.0
 MOST_LOSSES = 12
 #: A node that has no memory for so many units is left alone.
 MOST_REFUSALS = 3
+
+#: Sentences of a report, at most: frames may each have their own.
+MOST_NOTES = 50
 
 OnProgress = Callable[[Progress], object]
 #: Takes the result of a unit, the first that comes.
@@ -266,7 +269,8 @@ class Leader:
         self.team.lose(member)
         for unit in held:
             if self.queue.losses.get(unit.name, 0) >= MOST_LOSSES:
-                raise ClusterError(f"{unit.name}: {MOST_LOSSES} workers were lost while they rendered it, the last one on node {member.node.name}: {why}")
+                count, node = MOST_LOSSES, member.node.name
+                raise ClusterError(f"{unit.name}: {count} workers were lost while they rendered it, the last one on node {node}: {why}")
 
     def _fail(self, node: str, unit: str, message: str) -> None:
         self.report.failures.append(Failure(node, unit, message))
@@ -274,7 +278,8 @@ class Leader:
         logger.warning("node %s: %s: %s", node, unit or "the node", message)
 
     def _note(self, notes: Iterable[str]) -> None:
-        self.report.notes += [note for note in dict.fromkeys(notes) if note not in self.report.notes]
+        new = [note for note in dict.fromkeys(notes) if note not in self.report.notes]
+        self.report.notes += new[: max(MOST_NOTES - len(self.report.notes), 0)]
 
     def _tell(self) -> None:
         """Tells how far it is, and how long the rest takes at the speed of all actors together."""

@@ -38,11 +38,11 @@ def picture(
     on_progress: Callable[[Progress], object] | None = None,
     **request: Unpack[PictureRequest],
 ) -> Report:
-    """Renders a picture of `scene`, a file, to `output` in bands of 64 rows or more, on the cluster at `address`. Without an output, the report has it as
-    its `image`. The leader needs memory for the whole: about 50 bytes for each pixel.
+    """Renders a picture of `scene`, a file, to `output` in bands of 64 rows or more, on the cluster at `address`. Without an output, the report has
+    it as its `image`. The leader needs memory for the whole: about 50 bytes for each pixel.
 
-    `cpus_per_actor`, `gpus_per_actor`, `actors`, `ship`, `on_progress` and the other keywords are as in `film`. A picture whose leader dies is begun anew:
-    nothing of it is on disk.
+    `cpus_per_actor`, `gpus_per_actor`, `actors`, `ship`, `on_progress` and the other keywords are as in `film`. A picture whose leader dies is begun
+    anew: nothing of it is on disk.
     """
     given = settings(request)
     each = share(cpus_per_actor, gpus_per_actor, given.get("device"))

@@ -10,8 +10,9 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
+from itertools import islice
 
 from ._units import Unit
 
@@ -19,6 +20,8 @@ from ._units import Unit
 DEPTH = 2
 #: Copies of a unit that are out at a time, at most.
 COPIES = 2
+#: So many units, those that were handed out first, are looked at for a copy: whoever is slow has held them longest.
+CANDIDATES = 64
 
 
 @dataclass(eq=False)
@@ -63,6 +66,8 @@ class Queue:
         self.refused: dict[str, set[str]] = {}
         self._waiting = deque(self.units)
         self._holders: dict[str, list[Worker]] = {}
+        #: Units that one worker holds, in the order of their handing out.
+        self._alone: dict[str, None] = {}
 
     @property
     def is_finished(self) -> bool:
@@ -74,16 +79,15 @@ class Queue:
         """How many units are not finished."""
         return len(self.units) - len(self.finished)
 
-    def take(self, worker: Worker, workers: Iterable[Worker], now: float) -> Unit | None:
+    def take(self, worker: Worker, workers: Collection[Worker], now: float) -> Unit | None:
         """The unit that a worker gets now, if it gets one."""
         if len(worker.held) >= DEPTH:
             return None
-        everyone = list(workers)
-        if worker.held and len(self._waiting) <= len(everyone):
+        if worker.held and len(self._waiting) <= len(workers):
             return None
         name = self._next(worker.node)
         if name is None and not worker.held:
-            name = self._slowest(worker, everyone)
+            name = self._slowest(worker, workers)
             self.copies += name is not None
         if name is None:
             return None
@@ -91,6 +95,7 @@ class Queue:
             worker.since = now
         worker.held[name] = now
         self._holders.setdefault(name, []).append(worker)
+        self._count(name)
         return self.units[name]
 
     def done(self, unit: Unit, worker: Worker, now: float) -> bool:
@@ -101,6 +106,7 @@ class Queue:
         if unit.name in self.finished:
             return False
         self.finished.add(unit.name)
+        self._count(unit.name)
         self.weight_done += unit.weight
         return True
 
@@ -145,14 +151,13 @@ class Queue:
             self._waiting.append(name)
         return None
 
-    def _slowest(self, worker: Worker, workers: list[Worker]) -> str | None:
-        usual = self.pace(workers)
+    def _slowest(self, worker: Worker, workers: Iterable[Worker]) -> str | None:
+        usual = self.pace(workers) if self._alone else 1.0
         last: tuple[float, str] | None = None
-        for name, holders in self._holders.items():
-            is_free = holders and len(holders) < COPIES and name not in self.finished
-            if not is_free or worker.node in self.refused.get(name, ()):
+        for name in islice(self._alone, CANDIDATES):
+            if worker.node in self.refused.get(name, ()):
                 continue
-            until = holders[0].expected(self.units[name], self.units, usual)
+            until = self._holders[name][0].expected(self.units[name], self.units, usual)
             if last is None or until > last[0]:
                 last = (until, name)
         return last[1] if last else None
@@ -164,13 +169,22 @@ class Queue:
         return sum(worker.seconds for worker in known) / sum(worker.weight for worker in known) if known else 1.0
 
     def _release(self, name: str, worker: Worker, now: float) -> None:
+        if next(iter(worker.held), None) == name:
+            worker.since = now
         worker.held.pop(name, None)
-        worker.since = now
         holders = self._holders.get(name, [])
         if worker in holders:
             holders.remove(worker)
         if not holders:
             self._holders.pop(name, None)
+        self._count(name)
+
+    def _count(self, name: str) -> None:
+        """Notes whether a unit may get a copy."""
+        if name not in self.finished and len(self._holders.get(name, ())) == 1 < COPIES:
+            self._alone.setdefault(name)
+        else:
+            self._alone.pop(name, None)
 
     def _again(self, name: str) -> None:
         if name in self.finished or self._holders.get(name) or name in self._waiting:

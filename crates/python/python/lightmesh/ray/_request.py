@@ -34,11 +34,11 @@ def settings(request: Mapping[str, object]) -> dict[str, object]:
     for name, value in request.items():
         values = value if isinstance(value, (list, tuple)) else [value]
         if any(isinstance(item, (Camera, Light, Environment)) for item in values):
-            raise SettingError(f"{name}: objects stay on this machine; give it as text, as `lightmesh render` takes it, or put it into the scene's file")
+            raise SettingError(f"{name}: objects stay on this machine; give it as text, as for `lightmesh render`, or put it into the scene's file")
     given = {name: value for name, value in request.items() if value is not None}
-    if given.get("device") == "cuda" or str(given.get("device", "")).startswith("cuda:"):
-        # Ray shows an actor the GPUs that are its own, numbered from 0.
-        given["device"] = "cuda"
+    device = str(given.get("device", "auto"))
+    if device.startswith("cuda:"):
+        raise SettingError(f"device={device!r}: Ray chooses the GPU of each actor; give device='cuda'")
     return given
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import ray
+import ray.exceptions
 from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 
 from . import _nodes
@@ -201,6 +202,14 @@ class Team:
 
     def close(self, output: Path | None, digest: str | None) -> None:
         """Ends all actors, and cleans up on every node that is there."""
+        try:
+            self._end(output, digest)
+        except ray.exceptions.RayError as error:
+            # What ended the run is told, not that its cluster is gone.
+            logger.warning("the cluster cannot be cleaned up: %s", error)
+        _nodes.clean(output, [], None)
+
+    def _end(self, output: Path | None, digest: str | None) -> None:
         for member in self.members:
             ray.kill(cast(Any, member.handle))
         self.members = []
@@ -212,7 +221,6 @@ class Team:
         ]
         if calls:
             ray.wait(calls, num_returns=len(calls), timeout=2 * _nodes.PATIENCE)
-        _nodes.clean(output, [], None)
 
 
 def connect(address: str | None) -> None:
