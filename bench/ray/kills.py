@@ -187,7 +187,9 @@ class Trial:
         self.look()
         if leader.returncode:
             raise SystemExit(f"the leader failed: see {self.folder.parent / self.folder.name}.log")
-        return {**json.loads(text.splitlines()[-1]), "wall": time.monotonic() - begin}
+        # Ray prints there what workers print.
+        (told,) = [line for line in text.splitlines() if line.startswith('{"units"')]
+        return {**json.loads(told), "wall": time.monotonic() - begin}
 
     def wait_for_work(self, leader: subprocess.Popen) -> None:
         """Waits until something is rendered again, so that the next kill hits it."""

@@ -5,8 +5,8 @@
 
 Python needs the wheel and Ray. The same film is rendered by 1, 2, … actors of one CPU each on a cluster of this machine. Efficiency is that of
 `seconds.render`: what the images took of the actors' time from the first image to the last, compared with one actor; writing files is apart. The
-leader's part is what it computes itself for a unit: handing out, taking the result, the manifest. `--slow` stops one of four actors nine tenths of the
-time by signals, and says what that costs of the whole.
+leader's part is what it computes itself for a unit: handing out, taking the result, the manifest beside it. `--slow N` stops one of N actors nine
+tenths of the time by signals, and says what that costs of the whole.
 """
 
 from __future__ import annotations

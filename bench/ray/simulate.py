@@ -5,10 +5,10 @@
     python3 bench/ray/simulate.py --check scaling.json          # against what bench/ray/scaling.py has measured
     python3 bench/ray/simulate.py --measure                     # what the leader costs on this machine, by the number of actors
 
-Python needs the wheel, Ray and SimPy. Simulated are nodes that start, read the scene from one file server, build its structure, render and publish frames,
-break down and are replaced; some are slow. The queue is the one that the leader uses (`lightmesh/ray/_queue.py`), with its own cost: what the leader
-computes takes the seconds that `--measure` found, and everybody waits for it in turn. What is not simulated: the network between nodes but for the file
-server, and Ray's own head, whose limit is its makers' (2000 nodes).
+Python needs the wheel, Ray and SimPy. Simulated are nodes that start, read the scene from one file server, build its structure, render and publish
+frames, break down and are replaced; some are slow. The queue is the one that the leader uses (`lightmesh/ray/_queue.py`), with its own cost: what the leader
+computes takes the seconds that `--measure` found, and everybody waits for it in turn. Not simulated are the network between nodes but for the file
+server, and Ray's own head.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ class Cluster:
     server: float = 2.5e9
     client: float = 1e9
     #: What the leader computes for a unit that is finished; for each actor in every round; and for each node once a second.
-    unit: float = 2.0e-3
-    per_actor: float = 20e-6
+    unit: float = 2.7e-3
+    per_actor: float = 10e-6
     per_node: float = 20e-6
 
 
@@ -238,7 +238,8 @@ def check(path: Path) -> None:
         )  # fmt: skip
         told = [Film(cluster, int(row["units"]), seed).run() for seed in range(5)]
         simulated = statistics.mean(row["units"] / one.seconds for one in told)
-        print(f"{actors} actors: measured {row['units_per_second']:.2f} units/s, simulated {simulated:.2f} ({simulated / row['units_per_second'] - 1:+.1%})")
+        measured = row["units_per_second"]
+        print(f"{actors} actors: measured {measured:.2f} units/s, simulated {simulated:.2f} ({simulated / measured - 1:+.1%})")
 
 
 def measure() -> None:
@@ -271,7 +272,8 @@ def measure() -> None:
         waited = (time.perf_counter() - begin) / rounds
         for call in calls:
             ray.cancel(call)
-        print(f"{actors} actors: {1e3 * looked:.2f} ms for a look, {1e3 * waited:.2f} ms for two waits: {1e6 * (looked + waited) / actors:.1f} us an actor", flush=True)
+        each = 1e6 * (looked + waited) / actors
+        print(f"{actors} actors: {1e3 * looked:.2f} ms for a look, {1e3 * waited:.2f} ms for two waits: {each:.1f} us an actor", flush=True)
     ray.shutdown()
 
 

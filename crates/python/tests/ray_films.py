@@ -16,7 +16,7 @@ def command(*arguments):
 
 def flags(settings):
     text = {name: "x".join(map(str, value)) if isinstance(value, tuple) else str(value) for name, value in settings.items()}
-    return [part for name, value in text.items() for part in ([f"--{name}"] if value == "True" else [f"--{name}", value])]
+    return [f"--{name}" if value == "True" else f"--{name}={value}" for name, value in text.items()]
 
 
 def by_one_process(scene, output, settings):

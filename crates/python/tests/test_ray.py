@@ -70,8 +70,7 @@ def test_a_picture_is_that_of_one_process(cluster, tmp_path, name):
         if extension == "exr" and name not in ("plain", "transparent"):
             continue
         one, many = tmp_path / f"one.{extension}", tmp_path / f"many.{extension}"
-        arguments = [part.replace("--crop", "--crop=" + settings["crop"]) if part == "--crop" else part for part in flags(settings) if part != settings.get("crop")]
-        command("render", SCENE, "-o", one, "--device", "cpu", *arguments)
+        command("render", SCENE, "-o", one, "--device", "cpu", *flags(settings))
         report = lightmesh.ray.picture(SCENE, many, **settings)
         assert many.read_bytes() == one.read_bytes(), extension
         assert report.units >= 2 and report.image is None
@@ -132,7 +131,8 @@ def test_what_many_processes_cannot_do(tmp_path, call, message):
 def test_from_a_shell(cluster, tmp_path):
     by_one_process(SCENE, tmp_path / "one" / "f.#.png", {**FILM, "turntable": 2})
     (tmp_path / "many").mkdir()
-    line = [sys.executable, "-m", "lightmesh.ray", "film", SCENE, "-o", str(tmp_path / "many" / "f.#.png"), "--address", cluster.address, "--turntable", "2"]
+    output = str(tmp_path / "many" / "f.#.png")
+    line = [sys.executable, "-m", "lightmesh.ray", "film", SCENE, "-o", output, "--address", cluster.address, "--turntable", "2"]
     done = subprocess.run([*line, *flags(FILM)], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert "2 units" in done.stderr and "100%" in done.stderr

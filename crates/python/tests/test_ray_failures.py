@@ -109,7 +109,7 @@ def test_a_unit_that_kills_its_workers_is_given_up(cluster, tmp_path, monkeypatc
         try:
             log = _FilmLog(SCENE, tmp_path / "f.#.png", {**FILM, "turntable": 1})
             files_ = _files.Files(log.inputs, tmp_path / "f.#.png", False)
-            job = _actors.Job(SCENE, str(tmp_path / "f.#.png"), log.request, files_.digest, False, True, 0.0)
+            job = _actors.Job(SCENE, str(tmp_path / "f.#.png"), log.request, files_.digest, "", True, 0.0)
             leader.begin(_leader.Setup(files_, job.shared, log.has_written))
             leader.run([Deadly(1, "{}")], lambda *_: None)
         finally:

@@ -1,5 +1,7 @@
 """The files of a scene, and of a film, on nodes that do not share a disk with the leader."""
 
+import os
+
 import pytest
 from ray_films import FILM, SCENE, by_one_process, files
 
@@ -18,7 +20,8 @@ def model_files(tmp_path):
     folder.mkdir()
     lightmesh.Renderer("cpu").render(lightmesh.Scene.builtin(SCENE), size=(8, 8)).save(folder / "wood.png")
     (folder / "floor.mtl").write_text("newmtl wood\nKd 1 1 1\nmap_Kd wood.png\n")
-    (folder / "floor.obj").write_text("mtllib floor.mtl\nv -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nvt 0 0\nvt 0 1\nvt 1 1\nusemtl wood\nf 1/1 2/2 3/3\nf 1/1 3/3 4/2\n")
+    corners = "v -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nvt 0 0\nvt 0 1\nvt 1 1\n"
+    (folder / "floor.obj").write_text(f"mtllib floor.mtl\n{corners}usemtl wood\nf 1/1 2/2 3/3\nf 1/1 3/3 4/2\n")
     (folder / "scene.toml").write_text('[[mesh]]\nfile = "floor.obj"\n[[light]]\nkind = "sphere"\nposition = [0, 3, 0]\nradius = 0.5\n')
     return folder
 
@@ -76,11 +79,20 @@ def test_files_are_sent(cluster, model_files, tmp_path, monkeypatch):
     monkeypatch.setattr(_files.Files, "send", send)
     report = lightmesh.ray.film(scene, output, turntable=3, ship=True, **FILM)
     assert report.units == 3 and files(output.parent) == files(tmp_path / "one")
-    assert not _nodes.root_of(_nodes.digest_of_all(inputs(hidden))).exists(), "what was sent is removed"
+    assert not list(_nodes.folder().glob("*/**/floor.obj")), "what was sent is removed"
 
 
-def inputs(folder):
-    return [(path, *lightmesh._lightmesh._digest(path)) for path in [folder / "scene.toml", folder / "floor.mtl", folder / "floor.obj", folder / "wood.png"]]
+def test_what_was_left_long_ago_is_removed(tmp_path, monkeypatch):
+    monkeypatch.setattr(_nodes, "folder", lambda: tmp_path / "sent")
+    for name in ("old", "new"):
+        _nodes.receive(name, "/a/b", "node", b"1", True, False)
+        _nodes.receive(name, "/a/b", "node", b"2", False, True)
+    os.utime(tmp_path / "sent" / "old", (0, 0))
+    _nodes.receive("new", "/a/c", "node", b"", True, True)
+    assert not (tmp_path / "sent" / "old").exists() and (tmp_path / "sent" / "new" / "a" / "b").read_bytes() == b"12"
+    monkeypatch.setattr(os, "getuid", lambda: 12345)
+    with pytest.raises(lightmesh.SaveError, match="belongs to another user"):
+        _nodes.receive("new", "/a/d", "node", b"", True, True)
 
 
 def test_frames_come_to_a_leader_whose_disk_is_its_own(cluster, tmp_path, monkeypatch):
@@ -93,7 +105,7 @@ def test_frames_come_to_a_leader_whose_disk_is_its_own(cluster, tmp_path, monkey
 
 def test_a_damaged_frame_is_not_published(tmp_path):
     log = _FilmLog(SCENE, tmp_path / "f.#.png", {**FILM, "turntable": 1})
-    actor = _actors.Actor(_actors.Job(SCENE, str(tmp_path / "f.#.png"), log.request, _nodes.digest_of_all(log.inputs), False, False, 0.0))
+    actor = _actors.Actor(_actors.Job(SCENE, str(tmp_path / "f.#.png"), log.request, _nodes.digest_of_all(log.inputs), "", False, 0.0))
     chosen = actor.run(_units.Choose()).result.text
     log.choose(chosen)
     done = actor.run(_units.Frame(1, chosen))

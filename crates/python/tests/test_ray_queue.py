@@ -120,7 +120,10 @@ def test_what_a_node_has_no_memory_for_goes_elsewhere():
     assert queue.take(c, workers, 1.0) is unit
 
 
-@pytest.mark.parametrize(("width", "height", "actors"), [(160, 2560, 4), (64, 30, 4), (1024, 64, 1), (1024, 127, 9), (32768, 32768, 2), (100_000, 70, 3), (7, 1, 1)])
+@pytest.mark.parametrize(
+    ("width", "height", "actors"),
+    [(160, 2560, 4), (64, 30, 4), (1024, 64, 1), (1024, 127, 9), (32768, 32768, 2), (100_000, 70, 3), (7, 1, 1)],
+)
 def test_bands_have_all_rows(width, height, actors):
     heights = bands(width, height, actors)
     assert sum(heights) == height and max(heights) - min(heights) <= 1

@@ -36,7 +36,8 @@ def test_wrong_arguments(tool, setting, tmp_path):
 @pytest.mark.parametrize("tool", ["mypy", "pyright"])
 def test_the_package_itself(tool):
     pytest.importorskip(tool)
-    command = {"mypy": ["mypy", "--strict", "-p", "lightmesh.ray"], "pyright": ["pyright", "--pythonpath", sys.executable, str(Path(lightmesh.ray.__file__).parent)]}
+    folder = str(Path(lightmesh.ray.__file__).parent)
+    command = {"mypy": ["mypy", "--strict", "-p", "lightmesh.ray"], "pyright": ["pyright", "--pythonpath", sys.executable, folder]}
     result = subprocess.run([sys.executable, "-m", *command[tool]], capture_output=True, text=True, timeout=600)
     assert result.returncode == 0, result.stdout
 

@@ -1,4 +1,4 @@
-"""A program that uses every public name of `lightmesh.ray`, for type checkers: `test_ray_types.py` fails if it lacks one. It is checked, and never run."""
+"""A program that uses every public name of `lightmesh.ray`, for type checkers: `test_ray_types.py` fails if it lacks one. It is never run."""
 
 from typing_extensions import assert_type
 

@@ -39,8 +39,8 @@ class Job:
     request: str
     #: The checksum of all files that the scene is read from.
     digest: str
-    #: Whether the files were sent.
-    is_shipped: bool
+    #: The name of the folder that the files were sent to; empty if they were not.
+    shipped_as: str
     #: Whether the node sees the folder of the output.
     is_shared: bool
     #: The share of a GPU that it may use, or how many.
@@ -91,7 +91,7 @@ class Actor:
     def opened(self) -> _Worker:
         if self.worker is None:
             _nodes.begin_log()
-            scene = _nodes.shipped(self.job.digest, self.job.scene) if self.job.is_shipped else self.job.scene
+            scene = _nodes.shipped(self.job.shipped_as, self.job.scene) if self.job.shipped_as else self.job.scene
             self.place = place = self.placed()
             worker = _Worker(scene, place.output, json.dumps(self.request()))
             if _nodes.digest_of_all(worker.inputs) != self.job.digest:
@@ -111,10 +111,10 @@ class Actor:
     def request(self) -> dict[str, object]:
         """The request, with the device and the memory that are this actor's."""
         request: dict[str, object] = json.loads(self.job.request)
-        if self.job.is_shipped:
+        if self.job.shipped_as:
             for name in ("environment", "grid_file"):
                 if name in request:
-                    request[name] = _nodes.shipped(self.job.digest, str(request[name]))
+                    request[name] = _nodes.shipped(self.job.shipped_as, str(request[name]))
         if request.get("device", "auto") == "auto":
             # A task that owns no GPU sees all of its node, which belong to others.
             request["device"] = "cuda" if self.job.gpus > 0 else "cpu"

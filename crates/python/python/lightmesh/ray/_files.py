@@ -49,6 +49,8 @@ class Files:
         self.output = output
         #: A scene without files, such as a built-in one, has nothing to send.
         self.ship = ship and bool(self.inputs)
+        #: The name of the folder on the nodes: each run has its own, so that none takes away what another reads.
+        self.shipped_as = f"{self.digest}-{uuid.uuid4().hex[:8]}" if self.ship else ""
         self._look = ray.remote(num_cpus=0, max_retries=3)(_nodes.problems)
         self._lacking = ray.remote(num_cpus=0, max_retries=3)(_nodes.lacking)
         self._receive = ray.remote(num_cpus=0, max_retries=0)(_nodes.receive)
@@ -97,9 +99,9 @@ class Files:
     def send(self, nodes: Sequence[Node]) -> dict[str, str]:
         """Sends each file to the nodes that lack it, read once and piece by piece. Returns what went wrong, by the id of the node."""
         wrong: dict[str, str] = {}
-        asked = {node.id: self._lacking.options(scheduling_strategy=on(node)).remote(self.inputs, self.digest) for node in nodes}
+        asked = {node.id: self._lacking.options(scheduling_strategy=on(node)).remote(self.inputs, self.shipped_as) for node in nodes}
         lacks = {node_id: places for node_id, places in self._got(asked, wrong).items() if places}
-        by_id, token = {node.id: node for node in nodes}, uuid.uuid4().hex[:12]
+        by_id = {node.id: node for node in nodes}
         for place, (path, _, _) in enumerate(self.inputs):
             receivers = [node_id for node_id, places in lacks.items() if place in places]
             for number, (content, is_last) in enumerate(pieces(path) if receivers else ()):
@@ -107,7 +109,7 @@ class Files:
                 sent = {
                     # Nodes of one machine write apart.
                     node_id: self._receive.options(scheduling_strategy=on(by_id[node_id])).remote(
-                        self.digest, str(path), f"{token}-{node_id[:8]}", piece, number == 0, is_last
+                        self.shipped_as, str(path), node_id[:8], piece, number == 0, is_last
                     )
                     for node_id in receivers
                     if node_id not in wrong

@@ -119,7 +119,7 @@ class Leader:
         """Ends the actors, also those that still render copies, and cleans up."""
         self._beside.shutdown(wait=False, cancel_futures=True)
         files = None if self._setup is None else self._setup.files
-        self.team.close(None if files is None else files.output, files.digest if files is not None and files.ship else None)
+        self.team.close(None if files is None else files.output, "" if files is None else files.shipped_as)
         self.report.seconds = time.monotonic() - self.start
         return self.report
 

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from .. import __version__
-from .._errors import LightmeshError
+from .._errors import LightmeshError, SaveError
 from .._lightmesh import _digest, _seal, _sweep
 
 #: A file: path, size and checksum.
@@ -23,6 +23,8 @@ File = tuple[Path, int, str]
 LOG = "LIGHTMESH_RAY_LOG"
 #: How long the end of killed processes is waited for.
 PATIENCE = 10.0
+#: Files that were sent so long ago are no longer read.
+LONG = 7 * 24 * 3600.0
 
 
 def begin_log() -> None:
@@ -43,17 +45,17 @@ def digest_of_all(files: Iterable[File]) -> str:
     return whole.hexdigest()[:32]
 
 
-def root_of(digest: str) -> Path:
-    """The folder of files that were sent."""
+def folder() -> Path:
+    """Where files go that are sent to this node."""
     owner = os.getuid() if hasattr(os, "getuid") else "user"
-    return Path(tempfile.gettempdir()) / f"lightmesh-scenes-{owner}" / digest
+    return Path(tempfile.gettempdir()) / f"lightmesh-scenes-{owner}"
 
 
-def shipped(digest: str, path: str) -> str:
+def shipped(shipped_as: str, path: str) -> str:
     """What a path of the leader is called where files were sent."""
     if path.startswith("builtin:"):
         return path
-    return f"{root_of(digest)}{os.sep}{path.lstrip(os.sep)}"
+    return f"{folder() / shipped_as}{os.sep}{path.lstrip(os.sep)}"
 
 
 def problems(files: Sequence[File], output: Path | None, version: str) -> tuple[list[str], str | None]:
@@ -72,12 +74,12 @@ def problems(files: Sequence[File], output: Path | None, version: str) -> tuple[
     return found, None if output is None else _seal(output)
 
 
-def lacking(files: Sequence[File], digest: str) -> list[int]:
+def lacking(files: Sequence[File], shipped_as: str) -> list[int]:
     """Which of the files were not yet sent to this node, by their places in the list."""
     lacks = []
     for place, (path, size, xxh3) in enumerate(files):
         try:
-            is_there = _digest(shipped(digest, str(path))) == (size, xxh3)
+            is_there = _digest(shipped(shipped_as, str(path))) == (size, xxh3)
         except LightmeshError:
             is_there = False
         if not is_there:
@@ -85,18 +87,29 @@ def lacking(files: Sequence[File], digest: str) -> list[int]:
     return lacks
 
 
-def receive(digest: str, path: str, token: str, content: bytes, is_first: bool, is_last: bool) -> None:
-    """Writes a piece of a file that is sent. It appears with the last one; `token` is that of the run, so that runs do not mix."""
-    target = Path(shipped(digest, path))
+def receive(shipped_as: str, path: str, node: str, content: bytes, is_first: bool, is_last: bool) -> None:
+    """Writes a piece of a file that is sent. It appears with the last one. Nodes of one machine, each by its name, do not mix."""
+    prepare(folder())
+    target = Path(shipped(shipped_as, path))
     target.parent.mkdir(parents=True, exist_ok=True)
-    part = target.with_name(f".{target.name}.{token}.part")
+    part = target.with_name(f".{target.name}.{node}.part")
     with open(part, "wb" if is_first else "ab") as file:
         file.write(content)
     if is_last:
         part.replace(target)
 
 
-def clean(output: Path | None, pids: Sequence[int], digest: str | None) -> None:
+def prepare(whole: Path) -> None:
+    """Makes the folder that files are sent to, which nobody else may have made, and removes what runs have left there whose leaders died."""
+    whole.mkdir(mode=0o700, exist_ok=True)
+    if hasattr(os, "getuid") and whole.stat().st_uid != os.getuid():
+        raise SaveError(f"{whole} belongs to another user: remove it, or set TMPDIR for the node")
+    for left in whole.iterdir():
+        if time.time() - left.stat().st_mtime > LONG:
+            shutil.rmtree(left, ignore_errors=True)
+
+
+def clean(output: Path | None, pids: Sequence[int], shipped_as: str) -> None:
     """Waits for the end of actors, and removes what they have left: temporary files beside the output, folders of their own, and what was sent."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end and any(is_alive(pid) for pid in pids):
@@ -105,8 +118,8 @@ def clean(output: Path | None, pids: Sequence[int], digest: str | None) -> None:
         _sweep(output)
     for pid in pids:
         shutil.rmtree(Path(tempfile.gettempdir()) / f"lightmesh-frames-{pid}", ignore_errors=True)
-    if digest is not None:
-        shutil.rmtree(root_of(digest), ignore_errors=True)
+    if shipped_as:
+        shutil.rmtree(folder() / shipped_as, ignore_errors=True)
 
 
 def is_alive(pid: int) -> bool:

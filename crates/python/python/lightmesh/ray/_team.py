@@ -200,22 +200,22 @@ class Team:
         """An actor runs in this process, whose traces are removed in the end."""
         self.pids.setdefault(member.node.id, set()).add(pid)
 
-    def close(self, output: Path | None, digest: str | None) -> None:
+    def close(self, output: Path | None, shipped_as: str) -> None:
         """Ends all actors, and cleans up on every node that is there."""
         try:
-            self._end(output, digest)
+            self._end(output, shipped_as)
         except ray.exceptions.RayError as error:
             # What ended the run is told, not that its cluster is gone.
             logger.warning("the cluster cannot be cleaned up: %s", error)
-        _nodes.clean(output, [], None)
+        _nodes.clean(output, [], "")
 
-    def _end(self, output: Path | None, digest: str | None) -> None:
+    def _end(self, output: Path | None, shipped_as: str) -> None:
         for member in self.members:
             ray.kill(cast(Any, member.handle))
         self.members = []
         clean = ray.remote(num_cpus=0, max_retries=0)(_nodes.clean)
         calls = [
-            clean.options(scheduling_strategy=on(node)).remote(output, sorted(self.pids.get(node.id, ())), digest)
+            clean.options(scheduling_strategy=on(node)).remote(output, sorted(self.pids.get(node.id, ())), shipped_as)
             for node in nodes()
             if node.id in self.pids or node.id in self.nodes
         ]
