@@ -55,7 +55,7 @@ class Cluster:
     server: float = 2.5e9
     client: float = 1e9
     #: What the leader computes for a unit that is finished; for each actor in every round; and for each node once a second.
-    unit: float = 2.7e-3
+    unit: float = 3.0e-3
     per_actor: float = 10e-6
     per_node: float = 20e-6
 
