@@ -123,6 +123,16 @@ class Deadly(_units.Frame):
         return (os._exit, (1,))
 
 
+def test_a_cluster_that_is_not_there(monkeypatch):
+    def refuse(**_):
+        raise ConnectionError("nobody answers")
+
+    monkeypatch.setattr(_team.ray, "is_initialized", lambda: False)
+    monkeypatch.setattr(_team.ray, "init", refuse)
+    with pytest.raises(lightmesh.ray.ClusterError, match="cannot connect to the cluster at 10.0.0.1:6379: nobody answers; check that it runs"):
+        _team.connect("10.0.0.1:6379")
+
+
 class Full:
     """A log on a disk that is full."""
 

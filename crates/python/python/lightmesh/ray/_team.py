@@ -19,6 +19,7 @@ from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 
 from . import _nodes
 from ._actors import Job, Opened, RemoteActor
+from ._errors import ClusterError
 from ._queue import Worker
 from ._units import Unit
 
@@ -227,4 +228,9 @@ def connect(address: str | None) -> None:
     """Connects to a cluster; the one that the program is connected to stays."""
     if not ray.is_initialized():
         address = address or os.environ.get("RAY_ADDRESS")
-        ray.init(address=address, log_to_driver=True, logging_level=logging.WARNING)
+        try:
+            ray.init(address=address, log_to_driver=True, logging_level=logging.WARNING)
+        except (ConnectionError, ray.exceptions.AuthenticationError) as error:
+            where = f"at {address}" if address else "on this machine"
+            remedy = "check that it runs (ray status), its address, and its token if it asks for one (RAY_AUTH_MODE=token)"
+            raise ClusterError(f"cannot connect to the cluster {where}: {error}; {remedy}") from error
