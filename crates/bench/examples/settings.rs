@@ -31,6 +31,34 @@ const TAKERS: [(&str, &str, &str, &[Group]); 4] = [
     ("OpenSettings", "open", "How a scene file is read: settings of `lightmesh render`.", Group::OPEN),
 ];
 
+/// Keyword arguments of `lightmesh.ray`: the name of the type, what it extends, its first sentence, and the groups.
+const REQUESTS: [(&str, &str, &str, &[Group]); 2] = [
+    (
+        "PictureRequest",
+        "TypedDict",
+        "Settings of a picture on a cluster: those of `lightmesh render`. What is left out, or `None`, is as there.",
+        &[Group::Reading, Group::Memory, Group::Form, Group::Storage, Group::Exposure, Group::Image, Group::Machine],
+    ),
+    ("FilmRequest", "PictureRequest", "The same of a film.", &[Group::Motion, Group::Frames]),
+];
+/// What is a parameter of its own, or is not for many processes.
+const NOT_IN_REQUESTS: [&str; 2] = ["frames", "partial"];
+
+const REQUESTS_HEADER: &str = "\
+\"\"\"The settings that films and pictures on a cluster take as keyword arguments. Made by `cargo xtask settings`.\"\"\"
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from typing import Literal, TypedDict, Union
+
+from numpy.typing import ArrayLike
+
+_Path = Union[str, PathLike[str]]
+_Color = Union[float, ArrayLike]
+";
+
 const HEADER: &str = "\
 \"\"\"The settings that functions take as keyword arguments. Made by `cargo xtask settings`.\"\"\"
 
@@ -97,7 +125,27 @@ fn files(folder: &Path) -> Vec<(PathBuf, String)> {
         files.push((folder.join(format!("src/docs/{list}.txt")), fields.map(item).collect()));
     }
     files.push((folder.join("python/lightmesh/_settings.py"), types));
+    files.push((folder.join("python/lightmesh/ray/_settings.py"), requests()));
     files
+}
+
+/// The settings of films and pictures on a cluster, where objects of Python stay on their machine.
+fn requests() -> String {
+    let mut types = REQUESTS_HEADER.to_owned();
+    for (name, base, sentence, groups) in REQUESTS {
+        types += &format!("\nclass {name}({base}, total=False):\n    \"\"\"{sentence}\"\"\"\n\n");
+        let is_in = |field: &&Field| groups.contains(&field.group) && !NOT_IN_REQUESTS.contains(&field.name);
+        for field in FIELDS.iter().filter(is_in) {
+            let kind = match field.name {
+                "camera" => "str".to_owned(),
+                "environment" => "_Path".to_owned(),
+                "light" => "str | Sequence[str]".to_owned(),
+                _ => annotation(field),
+            };
+            types += &format!("    {}: {kind} | None\n    \"\"\"{}\"\"\"\n", field.name, doc(field));
+        }
+    }
+    types
 }
 
 /// A text of the table in the words of Python, which may stand in quotes.

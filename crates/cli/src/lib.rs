@@ -24,6 +24,7 @@ use std::sync::Once;
 
 use clap::FromArgMatches;
 use clap::builder::Styles;
+use lightmesh::request::Order;
 
 use crate::args::{Cli, Command};
 use crate::failure::{Failure, INTERRUPTED, UNABLE};
@@ -43,6 +44,16 @@ pub fn run_command(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> 
     });
     interrupt::leave_if_requested();
     result.unwrap_or(UNABLE)
+}
+
+/// What a line of `lightmesh render` asks for, which begins with the name of the program; if it cannot be read, says why, and returns the exit code.
+pub fn parse_render(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> Result<Order, u8> {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    match parse(&arguments, Styles::plain()) {
+        Ok(Cli { command: Command::Render(args), .. }) => Ok(args.order()),
+        Ok(_) => Err(UNABLE),
+        Err(message) => Err(explain(&arguments, &message)),
+    }
 }
 
 fn parse(arguments: &[OsString], styles: Styles) -> Result<Cli, clap::Error> {

@@ -6,7 +6,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use lightmesh::request::files::json;
 pub(crate) use lightmesh::request::files::{OutputError, Outputs, publish, ready};
@@ -32,11 +32,24 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<(), OutputError> {
     write_stdout(&visible_json(&json(value)))
 }
 
+/// Prints paths to standard output, a line each: on a terminal made visible, else to the byte, for other programs.
+pub(crate) fn print_paths(paths: &[PathBuf]) -> Result<(), OutputError> {
+    if io::stdout().is_terminal() {
+        return print(&paths.iter().map(|path| format!("{}\n", visible(&path.to_string_lossy()))).collect::<String>());
+    }
+    let line = |path: &PathBuf| [path.as_os_str().as_encoded_bytes(), b"\n"].concat();
+    write_bytes(&paths.iter().flat_map(line).collect::<Vec<u8>>())
+}
+
 /// A closed pipe is not an error.
 fn write_stdout(text: &str) -> Result<(), OutputError> {
+    write_bytes(text.as_bytes())
+}
+
+fn write_bytes(bytes: &[u8]) -> Result<(), OutputError> {
     check_output().map_err(OutputError::Stdout)?;
     let mut stdout = io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(OutputError::Stdout(error)),
         _ => Ok(()),
     }

@@ -45,6 +45,7 @@ pub use output::{Output, Ready, WriteError};
 pub use per_process::PerProcess;
 pub use publish::{PublishError, publish, publish_record};
 pub use read::{Portion, ReadError, read, read_inside, read_stream};
+pub use stale::remove_all_stale;
 pub use stream::{check_output, is_standard_output, look_at_output};
 pub use target::{Identity, TargetError, directory, identity};
 pub use visible::{visible, visible_json, visible_lines};

@@ -49,7 +49,8 @@ pub(crate) fn sweep(directory: &Path) {
     }
 }
 
-pub(crate) fn remove_all_stale(directory: &Path) {
+/// Removes the temporary files that dead runs have left in a directory, now.
+pub fn remove_all_stale(directory: &Path) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten().filter(is_temporary) {
         remove_stale(&entry.path());
     }

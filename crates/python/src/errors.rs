@@ -191,6 +191,7 @@ impl IntoException for Error {
             Error::Save(error) => error.into_exception(),
             Error::Mesh(error) => error.into_exception(),
             Error::MeshSave(error) => error.into_exception(),
+            Error::Cluster(_) => setting(text(&self)),
             Error::Output(_) | Error::Movie(_) | Error::Manifest(_) => class::SaveError::new_err(text(&self)),
             // The class of what happened, with what is said of the film.
             Error::Frame { number, last, finished, goes_on, cause } => {

@@ -50,6 +50,17 @@ impl Frame {
         Frame { rendered, stops, notes, description, storage, number: None, when: String::new() }
     }
 
+    /// A frame whose files are stored as a request says.
+    pub(crate) fn stored_as(
+        rendered: Rendered,
+        stops: f32,
+        notes: Vec<String>,
+        world: &Scene,
+        storage: Request,
+    ) -> Frame {
+        Frame { storage, ..Frame::new(rendered, stops, notes, world) }
+    }
+
     /// A frame of a film of this request.
     pub(crate) fn of_film(rendered: RenderedFrame, request: &Request, notes: Vec<String>) -> Frame {
         let RenderedFrame { number, when, scene, frame, stops } = rendered;

@@ -6,6 +6,7 @@
 mod argument;
 mod cache;
 mod camera;
+mod cluster;
 mod convert;
 mod devices;
 mod environment;
@@ -71,7 +72,15 @@ mod _lightmesh {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         crate::process::begin();
-        // For pickles alone: it is not exported.
+        // For `lightmesh.ray` and for pickles alone: they are not exported.
+        let py = module.py();
+        module.setattr("_FilmLog", py.get_type::<crate::cluster::_FilmLog>())?;
+        module.setattr("_BandedPicture", py.get_type::<crate::cluster::_BandedPicture>())?;
+        module.setattr("_Worker", py.get_type::<crate::cluster::_Worker>())?;
+        module.setattr("_digest", wrap_pyfunction!(crate::cluster::_digest, module)?)?;
+        module.setattr("_seal", wrap_pyfunction!(crate::cluster::_seal, module)?)?;
+        module.setattr("_sweep", wrap_pyfunction!(crate::cluster::_sweep, module)?)?;
+        module.setattr("_parse", wrap_pyfunction!(crate::cluster::_parse, module)?)?;
         module.setattr("_restore", wrap_pyfunction!(crate::restored::_restore, module)?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

@@ -29,8 +29,8 @@ const NO_LIGHTS: &str = "the scene has no lights, so there is no visibility of a
                          (lights, sky)";
 
 /// Renders scenes on a `device`: "auto", "cpu", "cuda" or "cuda:1", or on several: "cuda:all", "cuda:0,1" or "cuda:all,cpu", with so many `threads` of
-/// the CPU, or all. Can be used by several threads at once; the interpreter is free while it works. A process that is forked uses it with threads of its
-/// own, if the device is the CPU. Raises `DeviceError` if the device cannot be used.
+/// the CPU, or as many as `OMP_NUM_THREADS` says, or all. Can be used by several threads at once; the interpreter is free while it works. A process that is
+/// forked uses it with threads of its own, if the device is the CPU. Raises `DeviceError` if the device cannot be used.
 #[pyclass(frozen, module = "lightmesh")]
 pub(crate) struct Renderer {
     machine: PerProcess<Machine>,
@@ -64,7 +64,7 @@ impl Renderer {
                 )));
             }
             Choice::of(Device::Cpu)
-                .and_then(|choice| Machine::new(choice, self.threads))
+                .and_then(|choice| Machine::new(choice, self.threads.or(process::threads())))
                 .map_err(IntoException::into_exception)
         })
     }
@@ -83,7 +83,7 @@ impl Renderer {
         let made = || {
             let choice = Choice::of(device)?;
             let (chosen, reason) = (choice.device.to_string(), choice.reason.clone());
-            Ok((PerProcess::new(Machine::new(choice, threads)?), chosen, reason))
+            Ok((PerProcess::new(Machine::new(choice, threads.or(process::threads()))?), chosen, reason))
         };
         let made = process::detach(py, made)?;
         let (machine, device, reason) = made.map_err(|error: RenderError| error.into_exception())?;

@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use lightmesh::request::{Host, Words, fewer_threads};
 use lightmesh::{Observer, Renderer, Stage};
+use lightmesh_files::visible;
 use pyo3::prelude::*;
 
 use crate::argument::Given;
@@ -98,18 +99,25 @@ pub(crate) struct Wishes {
     pub(crate) cancel: Option<Cancel>,
     /// Whether progress is that of other work, too.
     pub(crate) is_part: bool,
+    /// Whether warnings are kept among the notes.
+    pub(crate) warnings: bool,
 }
 
 impl Wishes {
+    /// To hear of everything that is worth a sentence.
+    pub(crate) fn of_warnings() -> Wishes {
+        Wishes { warnings: true, ..Wishes::default() }
+    }
+
     pub(crate) fn new(progress: Option<Callback>, cancel: Option<Given<Cancel>>) -> Wishes {
         let (progress, cancel) = (progress.map(|Callback(progress)| progress), cancel.map(|Given(cancel)| cancel));
-        Wishes { progress, cancel, is_part: false }
+        Wishes { progress, cancel, ..Wishes::default() }
     }
 
     /// The same for a part of the work that progress is told of.
     pub(crate) fn of_part(&self, py: Python<'_>) -> Wishes {
         let progress = self.progress.as_ref().map(|callback| callback.clone_ref(py));
-        Wishes { progress, cancel: self.cancel.clone(), is_part: true }
+        Wishes { progress, cancel: self.cancel.clone(), is_part: true, warnings: self.warnings }
     }
 }
 
@@ -119,6 +127,7 @@ pub(crate) struct Watch {
     changed: Condvar,
     stop: AtomicBool,
     cancel: Option<Cancel>,
+    keeps_warnings: bool,
 }
 
 #[derive(Default)]
@@ -139,8 +148,8 @@ impl State {
 }
 
 impl Watch {
-    fn new(cancel: Option<Cancel>) -> Watch {
-        Watch { state: Mutex::default(), changed: Condvar::new(), stop: AtomicBool::new(false), cancel }
+    fn new(cancel: Option<Cancel>, keeps_warnings: bool) -> Watch {
+        Watch { state: Mutex::default(), changed: Condvar::new(), stop: AtomicBool::new(false), cancel, keeps_warnings }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -168,6 +177,11 @@ impl Watch {
     /// What was said to people.
     pub(crate) fn notes(&self) -> Vec<String> {
         self.state().notes.clone()
+    }
+
+    /// What was said to people, and warnings, made safe to show.
+    pub(crate) fn said(&self) -> Vec<String> {
+        self.state().notes.iter().map(|text| visible(text).into_owned()).collect()
     }
 
     /// Waits a little; returns whether the work is over, and its progress if that has changed.
@@ -219,11 +233,19 @@ impl Observer for Watch {
 
 impl Host for Watch {
     fn warning(&self, text: &str) {
-        self.warn(About::Other, text);
+        if self.keeps_warnings {
+            self.note(text);
+        } else {
+            self.warn(About::Other, text);
+        }
     }
 
     fn warning_of_scene(&self, text: &str) {
-        self.warn(About::Scene, text);
+        if self.keeps_warnings {
+            self.note(text);
+        } else {
+            self.warn(About::Scene, text);
+        }
     }
 }
 
@@ -242,8 +264,8 @@ pub(crate) fn run<T: Send, E: Send>(
     wishes: Wishes,
     work: impl FnOnce(&Watch) -> Result<T, E> + Send,
 ) -> PyResult<Result<T, E>> {
-    let Wishes { progress, cancel, is_part } = wishes;
-    let watch = Watch::new(cancel);
+    let Wishes { progress, cancel, is_part, warnings } = wishes;
+    let watch = Watch::new(cancel, warnings);
     let attend = |py: Python<'_>, news: Option<Progress>| -> PyResult<()> {
         py.check_signals()?;
         if let (Some(callback), Some(news)) = (&progress, news) {

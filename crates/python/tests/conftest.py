@@ -1,5 +1,6 @@
 """What tests share: a small scene of arrays, and a renderer on the CPU."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -62,3 +63,21 @@ def model() -> Callable[[str], Path]:
         return folder / path
 
     return find
+
+
+@pytest.fixture(scope="session")
+def cluster():
+    """A Ray cluster of this machine: a head without CPUs, and two nodes with one each."""
+    ray = pytest.importorskip("ray")
+    from ray.cluster_utils import Cluster
+
+    # Tests report to nobody.
+    os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
+    cluster = Cluster()
+    cluster.add_node(num_cpus=0, object_store_memory=100_000_000, include_dashboard=False)
+    for _ in range(2):
+        cluster.add_node(num_cpus=1, object_store_memory=100_000_000)
+    ray.init(address=cluster.address, log_to_driver=False)
+    yield cluster
+    ray.shutdown()
+    cluster.shutdown()

@@ -33,7 +33,7 @@ macro_rules! tally {
         }
 
         /// How often each event happened. Means are taken over the surface points, including those seen in mirrors.
-        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
         pub struct Counts {
             /// Pixels of the image.
             pub pixels: u64,
@@ -51,15 +51,12 @@ macro_rules! tally {
                 Counts { pixels, template, non_finite_pixels: 0, $($report: tally!(@report $kind, counters.$name, points),)* }
             }
 
-            /// Those of a whole whose parts have these; means are weighted by surface points.
-            pub(crate) fn of_parts(parts: &[&Counts]) -> Counts {
-                let points: f64 = parts.iter().map(|part| part.surface_points as f64).sum::<f64>().max(1.0);
-                Counts {
-                    pixels: parts.iter().map(|part| part.pixels).sum(),
-                    template: parts.iter().map(|part| part.template).max().unwrap_or(0),
-                    non_finite_pixels: parts.iter().map(|part| part.non_finite_pixels).sum(),
-                    $($report: tally!(@join $kind, parts, $report, points),)*
-                }
+            /// Adds those of another part of the same image.
+            pub(crate) fn add(&mut self, other: &Counts) {
+                let points = [self.surface_points as f64, other.surface_points as f64];
+                self.pixels += other.pixels;
+                self.non_finite_pixels += other.non_finite_pixels;
+                $(tally!(@add $kind, self.$report, other.$report, points);)*
             }
 
             /// All numbers with their names.
@@ -73,9 +70,9 @@ macro_rules! tally {
             }
         }
     };
-    (@join sum, $parts:ident, $report:ident, $points:ident) => { $parts.iter().map(|part| part.$report).sum() };
-    (@join mean, $parts:ident, $report:ident, $points:ident) => {
-        $parts.iter().map(|part| part.$report * part.surface_points as f64).sum::<f64>() / $points
+    (@add sum, $own:expr, $other:expr, $points:ident) => { $own += $other };
+    (@add mean, $own:expr, $other:expr, $points:ident) => {
+        $own = ($own * $points[0] + $other * $points[1]) / ($points[0] + $points[1]).max(1.0)
     };
     (@type sum) => { u64 };
     (@type mean) => { f64 };

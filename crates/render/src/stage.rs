@@ -25,7 +25,7 @@ macro_rules! stages {
         /// Time spent in each stage. `load`, `build` and `write` are not part of `render`. On a device the stages between
         /// `upload` and `download` are measured on the device. Geometry that was built or uploaded for an earlier image takes
         /// no time again.
-        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
         pub struct Seconds {
             /// Loading the scene.
             pub load: f64,
@@ -44,12 +44,12 @@ macro_rules! stages {
                 }
             }
 
-            /// The sums of the seconds of stages.
-            pub(crate) fn of_parts<'a>(parts: impl Iterator<Item = &'a Seconds>) -> Seconds {
-                parts.fold(Seconds::default(), |mut sum, part| {
-                    $(sum.$name += part.$name;)*
-                    sum
-                })
+            /// Adds those of another part of the work.
+            pub(crate) fn add(&mut self, other: &Seconds) {
+                self.load += other.load;
+                $(self.$name += other.$name;)*
+                self.render += other.render;
+                self.write += other.write;
             }
 
             /// The seconds of one stage, mutable.

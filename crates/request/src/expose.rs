@@ -112,16 +112,39 @@ impl Metering {
         host: &dyn Host,
         mut render: impl FnMut(&PreparedScene, &Settings, &dyn Host) -> Result<Frame, RenderError>,
     ) -> Result<(Frame, f32), RenderError> {
+        self.image(&prepared.scene, settings, host, |background, settings, host| match background {
+            None => render(prepared, settings, host),
+            Some(background) => {
+                let lights = prepared.scene.lights.clone().with_background(background);
+                render(&prepared.with_lights(lights), settings, host)
+            }
+        })
+    }
+
+    /// How many times an image is rendered.
+    pub(crate) fn times(&self, scene: &Scene, settings: &Settings) -> usize {
+        let is_around = self.is_automatic() && settings.crop.is_some_and(|crop| !crop.is_within(settings.size));
+        if self.is_reflected(scene, settings) || is_around { 2 } else { 1 }
+    }
+
+    /// The same for a scene that is prepared elsewhere: `render` may be told of a background that replaces the scene's.
+    pub(crate) fn image<E>(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        host: &dyn Host,
+        mut render: impl FnMut(Option<Vec3>, &Settings, &dyn Host) -> Result<Frame, E>,
+    ) -> Result<(Frame, f32), E> {
+        let times = self.times(scene, settings);
         // An automatic exposure is that of the whole image.
         let mut settings = settings.clone();
         let crop = settings.crop.take_if(|_| self.is_automatic());
         // What lies around the image is not in it.
         let around = crop.filter(|crop| !crop.is_within(settings.size));
         settings.transparent |= self.is_apart();
-        let is_reflected = self.is_reflected(&prepared.scene, &settings);
-        let times = if is_reflected || around.is_some() { 2 } else { 1 };
+        let is_reflected = self.is_reflected(scene, &settings);
         let (mut parts, start) = (Parts::new(times), Instant::now());
-        let mut frame = render(prepared, &settings, &parts.next(host))?;
+        let mut frame = render(None, &settings, &parts.next(host))?;
         parts.took(start.elapsed().as_secs_f64());
         let stops = self.stops(&frame, host);
         settings.crop = settings.crop.or(around);
@@ -131,11 +154,10 @@ impl Metering {
             && !host.cancelled()
         {
             settings.transparent = false;
-            let lights = prepared.scene.lights.clone().with_background(background);
-            frame = render(&prepared.with_lights(lights), &settings, &parts.next(host))?;
+            frame = render(Some(background), &settings, &parts.next(host))?;
         } else {
             if around.is_some() {
-                frame = render(prepared, &settings, &parts.next(host))?;
+                frame = render(None, &settings, &parts.next(host))?;
             }
             if let Some(background) = background {
                 frame = self.put_behind(frame, background);

@@ -8,11 +8,13 @@
 //! * A [`Plan`] is a request that is checked as far as possible without the scene; [`Order`] names the scene and the files to write.
 //! * A [`Session`] has the scene staged, which means that it has the camera, the lights and the ground that it lacked, and prepared. It renders
 //!   pictures, [films](mod@film) and [sun studies](sun).
+//! * [Many processes](cluster) render one film or picture together.
 //! * A [`Host`] is the program around: it shows notes and progress, and can end the work.
 //! * Errors name settings; each face [turns](Told) the names into its own [`Words`].
 #![forbid(unsafe_code)]
 
 mod clipping;
+pub mod cluster;
 mod context;
 mod error;
 mod expose;
@@ -39,7 +41,7 @@ mod told;
 pub mod value;
 mod words;
 
-pub use error::{Error, ManifestError, MovieChoiceError, MovieError, RequestError, StageError};
+pub use error::{ClusterError, Error, ManifestError, MovieChoiceError, MovieError, RequestError, StageError};
 pub use fields::{field, nearest};
 pub use host::{BUILDING, FrameDone, Host, Part, Parts, RENDERING};
 pub use image_plan::{ImagePlan, StagedImage, StoragePlan};

@@ -3,13 +3,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use lightmesh_image::Format;
 use lightmesh_render::{Frame, PreparedScene, Renderer, Settings};
 use lightmesh_scene::Scene;
 
+use crate::cluster::staged;
 use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
-use crate::expose::Metering;
 use crate::film::{self, FrameRange, FrameRenderer, FrameWriter, RenderedFrame};
 use crate::host::{BUILDING, Host, Parts};
 use crate::mesh_file::Mesh;
@@ -78,20 +77,19 @@ impl Session {
         if let Some(text) = plan.files.misnamed(host.words()) {
             host.warning(&text);
         }
-        if let Some(file) = plan.staging.file() {
-            plan.files.outputs.keep("the environment", Some(file))?;
-        }
-        let staged = plan.staging.apply(&mut scene, host)?;
-        let is_linear = plan.files.format() == Some(Format::Exr);
-        let transparent = plan.settings.transparent;
-        let metering = Metering::of_staged(&mut scene, &staged, plan.files.exposure, is_linear, transparent);
+        let metering = staged(&plan, &mut scene, host)?;
         let prepared = host.during(BUILDING, || renderer.prepare(&scene, &plan.settings, host))?;
         film::explain(&scene, plan.film.is_some(), host);
         Ok(Session { prepared: Prepared { plan: Arc::new(plan), scene: prepared, metering }, load })
     }
 
-    fn context<'a>(&'a self, renderer: &'a Renderer, host: &'a dyn Host) -> Context<'a> {
+    pub(crate) fn context<'a>(&'a self, renderer: &'a Renderer, host: &'a dyn Host) -> Context<'a> {
         Context { renderer, plan: &self.prepared.plan, load: self.load, host }
+    }
+
+    /// The scene as it is prepared.
+    pub(crate) fn prepared(&self) -> &Prepared {
+        &self.prepared
     }
 
     /// The plan.

@@ -170,6 +170,10 @@ pub(crate) struct InfoArgs {
     #[arg(long)]
     pub(crate) devices: bool,
 
+    /// Print the files that the scene is read from, a line each: itself, and all it refers to that are there
+    #[arg(long, requires = "scene")]
+    pub(crate) files: bool,
+
     /// Print JSON, in world coordinates and degrees
     #[arg(long)]
     pub(crate) json: bool,

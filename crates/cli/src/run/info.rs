@@ -1,6 +1,9 @@
 //! `lightmesh info`.
 
+use std::path::PathBuf;
+
 use lightmesh::render::{DeviceReport, devices};
+use lightmesh::request::cluster::files_of;
 use lightmesh::request::{format_of, load_options};
 use lightmesh::scene::{SceneFormat, Up, UpInfo};
 use lightmesh_files::visible;
@@ -9,7 +12,12 @@ use serde::Serialize;
 use super::open::read;
 use crate::args::InfoArgs;
 use crate::failure::Failure;
-use crate::output;
+use crate::output::{self, OutputError};
+
+#[derive(Serialize)]
+struct Files<'a> {
+    files: &'a [PathBuf],
+}
 
 #[derive(Serialize)]
 struct Devices {
@@ -22,6 +30,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
             let request = args.reading.request();
             let options = load_options(&request, args.smooth.0, args.instances);
             let scene = read((path, request.scene_format), &options)?;
+            if args.files {
+                return Ok(print_files(&files_of(&scene, path, request.allow_outside), args.json)?);
+            }
             let mut info = scene.info();
             info.up.get_or_insert_with(|| usual_up(format_of(path, request.scene_format)));
             if args.json {
@@ -34,6 +45,14 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
         None => output::print(&devices().iter().map(device_line).collect::<String>()),
     };
     Ok(printed?)
+}
+
+/// Names are printed as they are, for other programs.
+fn print_files(files: &[PathBuf], as_json: bool) -> Result<(), OutputError> {
+    if as_json {
+        return output::print_json(&Files { files });
+    }
+    output::print_paths(files)
 }
 
 /// For scenes whose geometry does not indicate it.

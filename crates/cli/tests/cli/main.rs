@@ -7,6 +7,7 @@ mod compare;
 mod devices;
 mod display;
 mod faces;
+mod files;
 mod film;
 mod help;
 mod memory;

@@ -1,6 +1,7 @@
 """The compiled module: everything that `lightmesh` exports comes from here, but for exceptions and helpers of progress bars."""
 
-from collections.abc import Callable, Sequence
+import pathlib
+from collections.abc import Callable, Mapping, Sequence
 from typing import IO, Literal, final
 
 import numpy as np
@@ -611,8 +612,8 @@ class SunHours:
 @final
 class Renderer:
     """Renders scenes on a `device`: "auto", "cpu", "cuda" or "cuda:1", or on several: "cuda:all", "cuda:0,1" or "cuda:all,cpu", with so many `threads` of
-    the CPU, or all. Can be used by several threads at once; the interpreter is free while it works. A process that is forked uses it with threads of its
-    own, if the device is the CPU. Raises `DeviceError` if the device cannot be used."""
+    the CPU, or as many as `OMP_NUM_THREADS` says, or all. Can be used by several threads at once; the interpreter is free while it works. A process that is
+    forked uses it with threads of its own, if the device is the CPU. Raises `DeviceError` if the device cannot be used."""
 
     def __new__(cls, device: str = "auto", *, threads: int | None = None) -> Self: ...
     @property
@@ -706,5 +707,99 @@ def devices() -> list[DeviceInfo]:
 
 def command(arguments: Sequence[str]) -> int:
     """Runs the command line program with these arguments, and returns its exit code."""
+
+@final
+class _FilmLog:
+    """The log of a film that others render: the manifest of a film by one process. Raises what `Renderer.film` raises."""
+
+    def __new__(cls, scene: Path, output: Path, settings: Mapping[str, object]) -> Self: ...
+    @property
+    def notes(self) -> list[str]:
+        """What was chosen, corrected or guessed, as sentences."""
+    @property
+    def request(self) -> str:
+        """The request of workers, as text."""
+    @property
+    def inputs(self) -> list[tuple[pathlib.Path, int, str]]:
+        """The files that are needed: path, size and checksum."""
+    @property
+    def numbers(self) -> list[int]:
+        """The numbers of the frames that were left when it began."""
+    @property
+    def kept(self) -> int:
+        """How many frames were there and are kept."""
+    @property
+    def last(self) -> int:
+        """The film's last frame."""
+    @property
+    def chosen(self) -> str | None:
+        """What a worker chose for all frames, as text; `None` if that is to be asked."""
+    def choose(self, chosen: str) -> None:
+        """A worker has `chosen` for all frames."""
+    def has_written(self, seal: str) -> bool:
+        """Whether the manifest was lately written with this `seal`."""
+    def publish(self, number: int, content: bytes, files: str) -> None:
+        """Writes the file of frame `number`, its `content`, which a worker without this disk has sent with its `files`."""
+    def finished(self, number: int, files: str) -> None:
+        """Frame `number` is finished, its `files` are published."""
+    def close(self) -> None:
+        """Records what is not yet recorded."""
+
+@final
+class _BandedPicture:
+    """A picture of which others render the rows."""
+
+    def __new__(cls, scene: Path, output: Path | None, settings: Mapping[str, object]) -> Self: ...
+    @property
+    def notes(self) -> list[str]:
+        """What was chosen, corrected or guessed, as sentences."""
+    @property
+    def request(self) -> str:
+        """The request of workers, as text."""
+    @property
+    def inputs(self) -> list[tuple[pathlib.Path, int, str]]:
+        """The files that are needed: path, size and checksum."""
+    def render(
+        self, render: Callable[[str], Sequence[tuple[int, NDArray[np.float32], NDArray[np.float32] | None, str]]]
+    ) -> tuple[Frame, list[str]]:
+        """Makes the image of the bands that `render` returns for each pass, which it gets as text; writes the file if there is an output, and returns
+        the frame with what was said of it."""
+
+@final
+class _Worker:
+    """A scene that is prepared on a device; its frames and rows are rendered as they are asked for."""
+
+    def __new__(cls, scene: Path, output: Path | None, request: str) -> Self: ...
+    @property
+    def notes(self) -> list[str]:
+        """What was chosen, corrected or guessed, as sentences."""
+    @property
+    def inputs(self) -> list[tuple[pathlib.Path, int, str]]:
+        """The files that the scene was read from: path, size and checksum."""
+    @property
+    def threads(self) -> int:
+        """The CPU threads that it renders with."""
+    def choose(self) -> str:
+        """What holds for all frames of a film, as text."""
+    def frame(self, number: int, chosen: str) -> tuple[str, float, float, list[str]]:
+        """Renders frame `number` with what was `chosen`, and publishes its file. Returns the record of its files as text, the seconds of the image, those of
+        its file, and what was said of it."""
+    def rows(
+        self, render_pass: str, first: int, rows: int
+    ) -> tuple[tuple[NDArray[np.float32], NDArray[np.float32] | None, str], float]:
+        """Renders `rows` rows of a pass, which is given as text, from row `first` of the image on. Returns colours, alpha if there is one, statistics as
+        text, and the seconds of the image."""
+
+def _digest(path: Path) -> tuple[int, str]:
+    """Size and checksum of a file, `path`."""
+
+def _seal(output: Path) -> str | None:
+    """The seal of the manifest beside `output`, if there is one."""
+
+def _sweep(output: Path) -> None:
+    """Removes the temporary files that dead processes of this system have left beside `output`."""
+
+def _parse(arguments: Sequence[str]) -> tuple[pathlib.Path, pathlib.Path | None, str]:
+    """The scene, the output and the request, as text, of the arguments of `lightmesh render`. What cannot be read is explained, and `SystemExit` raised."""
 
 __version__: str

@@ -16,14 +16,11 @@ use super::Renderer;
 use super::frame::Frame;
 use super::picture::unfinished;
 use crate::cache::MeshCache;
-use crate::counters::Counts;
 use crate::device::Choice;
 use crate::error::RenderError;
 use crate::observer::{Observer, Progress};
 use crate::prepared::PreparedScene;
 use crate::settings::{Crop, Setting, Settings};
-use crate::stage::Seconds;
-use crate::stats::MemoryStats;
 use crate::sync::locked;
 
 /// Bands of fewer rows are rendered by one device, since they mostly repeat those around them.
@@ -255,9 +252,7 @@ impl Job<'_> {
             (stats.device.kind, stats.settings.device) = ("cuda,cpu", "cuda,cpu");
         }
         stats.settings.rows_per_band = all().map(|stats| stats.settings.rows_per_band).max().unwrap_or(0);
-        stats.counts = Counts::of_parts(&all().map(|stats| &stats.counts).collect::<Vec<_>>());
-        stats.seconds = Seconds::of_parts(all().map(|stats| &stats.seconds));
-        stats.memory = MemoryStats::now(all().map(|stats| stats.memory.device_peak_bytes).max().unwrap_or(0));
+        all().skip(1).for_each(|other| stats.add(other));
         stats
     }
 }

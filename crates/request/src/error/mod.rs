@@ -1,5 +1,6 @@
 //! What can end the work on a request.
 
+mod cluster;
 mod manifest;
 mod movie;
 mod output;
@@ -14,6 +15,7 @@ use lightmesh_scene::{CameraError, LoadError};
 
 use crate::told::{Told, display_by_fields};
 use crate::words::{Name, Words};
+pub use cluster::ClusterError;
 pub use manifest::ManifestError;
 pub(crate) use movie::FFMPEG;
 pub use movie::{MovieChoiceError, MovieError};
@@ -39,6 +41,8 @@ pub enum Error {
     Output(OutputError),
     /// A movie cannot be encoded.
     Movie(MovieError),
+    /// Many processes cannot do it together.
+    Cluster(ClusterError),
     /// A film's manifest cannot be written.
     Manifest(Box<ManifestError>),
     /// A file of light points and gathered light cannot be read.
@@ -70,6 +74,7 @@ impl Told for Error {
             Error::Save(error) => error.to_string(),
             Error::Output(error) => error.told(words),
             Error::Movie(error) => error.told(words),
+            Error::Cluster(error) => error.told(words),
             Error::Manifest(error) => error.told(words),
             Error::Mesh(error) => error.to_string(),
             Error::MeshSave(error) => error.to_string(),
@@ -125,6 +130,7 @@ impl Source for Error {
             Error::Save(error) => error.source(),
             Error::Output(error) => error.source(),
             Error::Movie(error) => error.source(),
+            Error::Cluster(error) => error.source(),
             Error::Manifest(error) => error.source(),
             Error::Mesh(error) => error.source(),
             Error::MeshSave(error) => error.source(),
@@ -147,7 +153,7 @@ macro_rules! from {
 from! {
     RequestError: Save(SaveError), Output(OutputError), Camera(CameraError), Movie(MovieChoiceError);
     Error: Request(RequestError), Stage(StageError), Render(RenderError), Save(SaveError), Output(OutputError),
-        Movie(MovieError), Mesh(MeshFileError), MeshSave(MeshSaveError);
+        Movie(MovieError), Cluster(ClusterError), Mesh(MeshFileError), MeshSave(MeshSaveError);
 }
 
 impl From<ManifestError> for RequestError {

@@ -32,7 +32,7 @@ use xxhash_rust::xxh3::Xxh3;
 use crate::error::ManifestError;
 use crate::files::json;
 use crate::order::Order;
-pub(crate) use record::Manifest;
+pub(crate) use record::{Manifest, records_of};
 
 /// The name of the file.
 const NAME: &str = "manifest.json";
@@ -74,15 +74,16 @@ pub(crate) struct Record {
 
 /// What was chosen for all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Chosen {
+pub struct Chosen {
     /// In stops, if it is automatic.
-    pub(crate) exposure: Option<f32>,
+    pub exposure: Option<f32>,
     /// In scene units, if it is automatic and the mode has one.
-    pub(crate) step: Option<f32>,
+    pub step: Option<f32>,
 }
 
+/// What is recorded of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct FileRecord {
+pub struct FileRecord {
     /// Its name in the folder, or its path.
     file: String,
     bytes: u64,
@@ -144,9 +145,28 @@ fn read(path: &Path) -> Result<Option<Folder>, ManifestError> {
     Ok(Some(folder))
 }
 
-fn write(path: &Path, mut folder: Folder) -> Result<(), ManifestError> {
+/// Returns its seal: the checksum that the file begins with.
+fn write(path: &Path, mut folder: Folder) -> Result<String, ManifestError> {
     folder.xxh3 = folder.checksum();
-    Ok(publish_record(Ready::with(path, json(&folder).as_bytes())?)?)
+    publish_record(Ready::with(path, json(&folder).as_bytes())?)?;
+    Ok(folder.xxh3)
+}
+
+/// Checks that a manifest can be written: that none of another kind is there, nor a damaged one.
+pub(crate) fn check(order: &Order) -> Result<(), ManifestError> {
+    read(&place(order).0).map(drop)
+}
+
+/// The seal of the manifest in a folder, if there is one that is whole.
+pub(crate) fn seal_in(folder: &Path) -> Option<String> {
+    read(&folder.join(NAME)).ok()?.map(|folder| folder.xxh3)
+}
+
+/// Size and checksum of a file.
+pub(crate) fn checksum_of(path: &Path) -> Result<(u64, String), ManifestError> {
+    let mut hash = Xxh3::new();
+    let bytes = digest(path, &mut hash)?;
+    Ok((bytes, hex(&hash)))
 }
 
 impl Default for Folder {

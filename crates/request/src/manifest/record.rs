@@ -1,6 +1,6 @@
 //! The record of a film while it is rendered.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -10,7 +10,7 @@ use lightmesh_files::{directory, identity};
 use lightmesh_scene::Scene;
 use xxhash_rust::xxh3::Xxh3;
 
-use super::{Chosen, FileRecord, Folder, Record, digest, hex, place, read, scene, settings, write};
+use super::{Chosen, FileRecord, Folder, Record, checksum_of, digest, hex, place, read, scene, settings, write};
 use crate::error::{ManifestError, RequestError};
 use crate::files::PictureFiles;
 use crate::film::{Film, FrameRange};
@@ -22,6 +22,8 @@ use crate::told::Told;
 const SHARE: u32 = 20;
 /// How long a run waits for others that write the manifest, and how often it looks.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// Seals that are remembered: others may see a manifest late.
+const SEALS: usize = 64;
 const LOOK: Duration = Duration::from_millis(5);
 
 /// What is recorded of a film by this run.
@@ -37,6 +39,8 @@ pub(crate) struct Manifest {
     is_ahead: bool,
     written: Instant,
     cost: Duration,
+    /// The last seals that it was written with.
+    seals: VecDeque<String>,
 }
 
 impl Manifest {
@@ -60,6 +64,7 @@ impl Manifest {
             is_ahead: false,
             written: Instant::now(),
             cost: Duration::ZERO,
+            seals: VecDeque::new(),
         };
         let Some(path) = manifest.path.clone() else { return Ok(manifest) };
         manifest.record.scene = scene::checksum(order, scene)?;
@@ -110,7 +115,15 @@ impl Manifest {
     /// [`ManifestError`] if they cannot be read, or the manifest cannot be written.
     pub(crate) fn finished(&mut self, number: u32, files: &PictureFiles) -> Result<(), ManifestError> {
         let Some(manifest) = &self.path else { return Ok(()) };
-        let records = regular(files).map(|path| FileRecord::of(path, directory(manifest))).collect::<Result<_, _>>()?;
+        let records = records_of(files, directory(manifest))?;
+        self.record_finished(number, records)
+    }
+
+    /// The same of files that another process has looked at.
+    ///
+    /// # Errors
+    /// [`ManifestError`] if the manifest cannot be written.
+    pub(crate) fn record_finished(&mut self, number: u32, records: Vec<FileRecord>) -> Result<(), ManifestError> {
         self.record.frames.insert(number, records);
         self.is_ahead = true;
         if self.record.frames.len() == 1 || self.written.elapsed() >= SHARE * self.cost { self.save() } else { Ok(()) }
@@ -122,6 +135,11 @@ impl Manifest {
     /// As [`Manifest::finished`].
     pub(crate) fn close(&mut self) -> Result<(), ManifestError> {
         if self.is_ahead { self.save() } else { Ok(()) }
+    }
+
+    /// Whether it was lately written with this seal.
+    pub(crate) fn has_written(&self, seal: &str) -> bool {
+        self.seals.iter().any(|known| known == seal)
     }
 
     fn save(&mut self) -> Result<(), ManifestError> {
@@ -140,7 +158,9 @@ impl Manifest {
             }
         }
         folder.films.insert(self.film.clone(), record);
-        write(path, folder)?;
+        let seal = write(path, folder)?;
+        self.seals.truncate(SEALS - 1);
+        self.seals.push_front(seal);
         (self.is_ahead, self.written, self.cost) = (false, Instant::now(), begin.elapsed());
         Ok(())
     }
@@ -160,9 +180,15 @@ impl Record {
 
 impl FileRecord {
     fn of(path: &Path, folder: &Path) -> Result<FileRecord, ManifestError> {
+        let (bytes, xxh3) = checksum_of(path)?;
+        Ok(FileRecord { file: name_in(folder, path), bytes, xxh3 })
+    }
+
+    /// Whether these are the bytes of the file.
+    pub(crate) fn is_of(&self, bytes: &[u8]) -> bool {
         let mut hash = Xxh3::new();
-        let bytes = digest(path, &mut hash)?;
-        Ok(FileRecord { file: name_in(folder, path), bytes, xxh3: hex(&hash) })
+        hash.update(bytes);
+        bytes.len() as u64 == self.bytes && hex(&hash) == self.xxh3
     }
 
     /// Whether the file at `path` is as recorded.
@@ -172,6 +198,11 @@ impl FileRecord {
             && digest(path, &mut hash).is_ok()
             && hex(&hash) == self.xxh3
     }
+}
+
+/// What is recorded of the files of a frame in a film in `folder`.
+pub(crate) fn records_of(files: &PictureFiles, folder: &Path) -> Result<Vec<FileRecord>, ManifestError> {
+    regular(files).map(|path| FileRecord::of(path, folder)).collect()
 }
 
 /// Whether all files of a frame are there as recorded.
