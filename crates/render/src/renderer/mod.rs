@@ -36,7 +36,7 @@ use crate::shadow::rows::KnownRows;
 pub use frame::Frame;
 use picture::picture_on;
 use resolve::Resolved;
-use several::Several;
+use several::names;
 pub use several::{Speeds, Worker, render_together};
 
 /// Renders scenes on one device, or on several.
@@ -54,7 +54,20 @@ enum Engine {
     /// A device and its backend. Images are rendered one after another: a device has one template in constant memory, and one set of counters.
     Cuda(Arc<Driver>, Box<Mutex<Cuda<Driver>>>),
     /// A renderer for each of several devices.
-    Several(Several),
+    Several(Vec<Renderer>, Speeds),
+}
+
+impl Engine {
+    /// A renderer for each of several devices, which share so many threads.
+    fn several(choices: Vec<Choice>, threads: usize) -> Result<Engine, RenderError> {
+        let share = threads.div_ceil(choices.len().max(1)).max(2);
+        let renderers = choices.into_iter().map(|choice| Renderer::on(choice, Some(share)));
+        Ok(Engine::Several(renderers.collect::<Result<_, _>>()?, Speeds::default()))
+    }
+}
+
+fn workers(renderers: &[Renderer]) -> Vec<&dyn Worker> {
+    renderers.iter().map(|renderer| renderer as &dyn Worker).collect()
 }
 
 impl Renderer {
@@ -90,7 +103,7 @@ impl Renderer {
         let engine = match choice.chosen {
             Chosen::Cpu => Engine::Cpu,
             Chosen::Cuda(driver) => Engine::Cuda(Arc::clone(&driver), Box::new(Mutex::new(Cuda::new(driver)))),
-            Chosen::Several(choices) => Engine::Several(Several::new(choices, pool.current_num_threads())?),
+            Chosen::Several(choices) => Engine::several(choices, pool.current_num_threads())?,
         };
         Ok(Renderer { pool, engine, preparations: Preparations::default(), rows: Arc::default() })
     }
@@ -158,7 +171,9 @@ impl Renderer {
         match &self.engine {
             Engine::Cpu => Cpu.check_structure(acceleration),
             Engine::Cuda(device, _) => gpu::check_structure(&**device, acceleration),
-            Engine::Several(several) => several.each(|renderer| renderer.check_structure(acceleration)),
+            Engine::Several(renderers, _) => {
+                renderers.iter().try_for_each(|renderer| renderer.check_structure(acceleration))
+            }
         }
     }
 
@@ -168,8 +183,10 @@ impl Renderer {
             Engine::Cpu => Budget::new(settings.memory_limit),
             // The limit is that of the device's own memory.
             Engine::Cuda(..) => Budget::default(),
-            Engine::Several(several) if several.has_cpu() => Budget::new(settings.memory_limit),
-            Engine::Several(_) => Budget::default(),
+            Engine::Several(renderers, _) if renderers.iter().any(|renderer| renderer.id().is_none()) => {
+                Budget::new(settings.memory_limit)
+            }
+            Engine::Several(..) => Budget::default(),
         }
     }
 
@@ -190,7 +207,9 @@ impl Renderer {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 picture_on(&*cuda, None, &self.rows, scene, settings, observer)
             }
-            Engine::Several(several) => several.render(&mut MeshCache::new(), scene, settings, observer),
+            Engine::Several(renderers, speeds) => {
+                render_together(&workers(renderers), speeds, (&mut MeshCache::new(), scene, settings), observer)
+            }
         })
     }
 
@@ -217,7 +236,11 @@ impl Renderer {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 points_on(&*cuda, &self.rows, &given, settings, observer)
             }
-            Engine::Several(several) => several.first(observer).visibility(scene, points, normals, settings, observer),
+            Engine::Several(renderers, _) => {
+                let first = &renderers[0];
+                observer.note(&format!("points are computed on one device: {}", first.name()));
+                first.visibility(scene, points, normals, settings, observer)
+            }
         })
     }
 
@@ -250,7 +273,9 @@ impl Renderer {
                 let cache = cache.device(cuda.pool().runtime().id());
                 picture_on(&*cuda, Some(cache), &self.rows, scene, settings, observer)
             }
-            Engine::Several(several) => several.render(cache, scene, settings, observer),
+            Engine::Several(renderers, speeds) => {
+                render_together(&workers(renderers), speeds, (cache, scene, settings), observer)
+            }
         })
     }
 }
@@ -260,14 +285,14 @@ impl Worker for Renderer {
         match &self.engine {
             Engine::Cpu => Cpu.name(),
             Engine::Cuda(driver, _) => format!("{} (cuda:{})", driver.gpu().name, driver.number()),
-            Engine::Several(several) => several.name(),
+            Engine::Several(renderers, _) => names(&workers(renderers)),
         }
     }
 
     fn id(&self) -> Option<u64> {
         match &self.engine {
             Engine::Cuda(driver, _) => Some(driver.id()),
-            Engine::Cpu | Engine::Several(_) => None,
+            Engine::Cpu | Engine::Several(..) => None,
         }
     }
 

@@ -12,11 +12,9 @@ use std::sync::{Condvar, Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
-use super::Renderer;
 use super::frame::Frame;
 use super::picture::unfinished;
 use crate::cache::MeshCache;
-use crate::device::Choice;
 use crate::error::RenderError;
 use crate::observer::{Observer, Progress};
 use crate::prepared::PreparedScene;
@@ -40,7 +38,7 @@ pub trait Worker: Sync {
     /// Renders a band.
     ///
     /// # Errors
-    /// As [`Renderer::render_with`].
+    /// As [`Renderer::render_with`](crate::Renderer::render_with).
     fn render(
         &self,
         cache: &mut MeshCache,
@@ -54,61 +52,10 @@ pub trait Worker: Sync {
 #[derive(Debug, Default)]
 pub struct Speeds(Mutex<Vec<Option<f64>>>);
 
-/// A renderer for each of several devices.
-pub(super) struct Several {
-    renderers: Vec<Renderer>,
-    speeds: Speeds,
-}
-
-impl Several {
-    /// On devices that are ready, which share so many threads.
-    pub(super) fn new(choices: Vec<Choice>, threads: usize) -> Result<Several, RenderError> {
-        let share = threads.div_ceil(choices.len().max(1)).max(2);
-        let renderers = choices.into_iter().map(|choice| Renderer::on(choice, Some(share)));
-        Ok(Several { renderers: renderers.collect::<Result<_, _>>()?, speeds: Speeds::default() })
-    }
-
-    pub(super) fn has_cpu(&self) -> bool {
-        self.renderers.iter().any(|renderer| renderer.id().is_none())
-    }
-
-    /// What they are called.
-    pub(super) fn name(&self) -> String {
-        names(&self.workers())
-    }
-
-    fn workers(&self) -> Vec<&dyn Worker> {
-        self.renderers.iter().map(|renderer| renderer as &dyn Worker).collect()
-    }
-
-    /// Does something with each until an error.
-    pub(super) fn each(&self, check: impl Fn(&Renderer) -> Result<(), RenderError>) -> Result<(), RenderError> {
-        self.renderers.iter().try_for_each(check)
-    }
-
-    /// The first, which does what is not shared.
-    pub(super) fn first(&self, observer: &dyn Observer) -> &Renderer {
-        let first = &self.renderers[0];
-        observer.note(&format!("points are computed on one device: {}", first.name()));
-        first
-    }
-
-    /// Renders one image on all of them.
-    pub(super) fn render(
-        &self,
-        cache: &mut MeshCache,
-        scene: &PreparedScene,
-        settings: &Settings,
-        observer: &dyn Observer,
-    ) -> Result<Frame, RenderError> {
-        render_together(&self.workers(), &self.speeds, (cache, scene, settings), observer)
-    }
-}
-
 /// Renders one image by several workers, whose speeds are kept for the next.
 ///
 /// # Errors
-/// As [`Renderer::render_with`]; that of the last device if all have failed.
+/// As [`Renderer::render_with`](crate::Renderer::render_with); that of the last device if all have failed.
 pub fn render_together(
     workers: &[&dyn Worker],
     speeds: &Speeds,
@@ -148,7 +95,7 @@ pub fn render_together(
     Ok(frame)
 }
 
-fn names(workers: &[&dyn Worker]) -> String {
+pub(super) fn names(workers: &[&dyn Worker]) -> String {
     workers.iter().map(|worker| worker.name()).collect::<Vec<_>>().join(", ")
 }
 
