@@ -1,6 +1,8 @@
 """The files of a scene, and of a film, on nodes that do not share a disk with the leader."""
 
 import os
+import tempfile
+from pathlib import Path
 
 import pytest
 from ray_films import FILM, SCENE, by_one_process, files
@@ -99,11 +101,14 @@ def test_frames_come_to_a_leader_whose_disk_is_its_own(cluster, tmp_path, monkey
     by_one_process(SCENE, tmp_path / "one" / "f.#.png", {**FILM, "turntable": 3})
     (tmp_path / "many").mkdir()
     monkeypatch.setattr(_files.Files, "sees", lambda *_: False)
+    before = set(Path(tempfile.gettempdir()).glob("lightmesh-frames-*"))
     lightmesh.ray.film(SCENE, tmp_path / "many" / "f.#.png", turntable=3, **FILM)
     assert files(tmp_path / "many") == files(tmp_path / "one")
+    assert set(Path(tempfile.gettempdir()).glob("lightmesh-frames-*")) == before, "folders of actors are removed"
 
 
-def test_a_damaged_frame_is_not_published(tmp_path):
+def test_a_damaged_frame_is_not_published(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     log = _FilmLog(SCENE, tmp_path / "f.#.png", {**FILM, "turntable": 1})
     actor = _actors.Actor(_actors.Job(SCENE, str(tmp_path / "f.#.png"), log.request, _nodes.digest_of_all(log.inputs), "", False, 0.0))
     chosen = actor.run(_units.Choose()).result.text

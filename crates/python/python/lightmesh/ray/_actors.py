@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import logging
 import os
-import shutil
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -45,6 +44,8 @@ class Job:
     is_shared: bool
     #: The share of a GPU that it may use, or how many.
     gpus: float
+    #: Which run it is of: what actors leave on a node is found by it.
+    run: str = ""
 
     def shared(self, is_shared: bool) -> Job:
         """The same for a node that sees the folder of the output, or does not."""
@@ -103,9 +104,7 @@ class Actor:
         """Where it writes. What the leader does not see goes to a folder of its own and from there to the leader."""
         if self.job.output is None or self.job.is_shared:
             return Place(None if self.job.output is None else Path(self.job.output), self.job.is_shared)
-        folder = Path(tempfile.gettempdir()) / f"lightmesh-frames-{os.getpid()}"
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir()
+        folder = Path(tempfile.mkdtemp(prefix=_nodes.frames_of(self.job.run)))
         return Place(folder / Path(self.job.output).name, is_shared=False)
 
     def request(self) -> dict[str, object]:

@@ -47,10 +47,12 @@ class Files:
         self.inputs = list(inputs)
         self.digest = _nodes.digest_of_all(self.inputs)
         self.output = output
+        #: The name of this run.
+        self.run = uuid.uuid4().hex[:12]
         #: A scene without files, such as a built-in one, has nothing to send.
         self.ship = ship and bool(self.inputs)
         #: The name of the folder on the nodes: each run has its own, so that none takes away what another reads.
-        self.shipped_as = f"{self.digest}-{uuid.uuid4().hex[:8]}" if self.ship else ""
+        self.shipped_as = f"{self.digest}-{self.run}" if self.ship else ""
         self._look = ray.remote(num_cpus=0, max_retries=3)(_nodes.problems)
         self._lacking = ray.remote(num_cpus=0, max_retries=3)(_nodes.lacking)
         self._receive = ray.remote(num_cpus=0, max_retries=0)(_nodes.receive)

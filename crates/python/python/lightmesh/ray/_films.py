@@ -59,7 +59,7 @@ def film(
     leader.report.kept, leader.report.notes = log.kept, log.notes
     try:
         files = Files(log.inputs, path, ship)
-        job = Job(scene_path(scene), str(path), log.request, files.digest, files.shipped_as, False, each.gpus)
+        job = Job(scene_path(scene), str(path), log.request, files.digest, files.shipped_as, False, each.gpus, files.run)
         leader.begin(Setup(files, job.shared, log.has_written))
         render(leader, log)
     finally:

@@ -119,7 +119,10 @@ class Leader:
         """Ends the actors, also those that still render copies, and cleans up."""
         self._beside.shutdown(wait=False, cancel_futures=True)
         files = None if self._setup is None else self._setup.files
-        self.team.close(None if files is None else files.output, "" if files is None else files.shipped_as)
+        if files is None:
+            self.team.close(None, "", "")
+        else:
+            self.team.close(files.output, files.shipped_as, files.run)
         self.report.seconds = time.monotonic() - self.start
         return self.report
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import logging
 import os
@@ -109,17 +110,25 @@ def prepare(whole: Path) -> None:
             shutil.rmtree(left, ignore_errors=True)
 
 
-def clean(output: Path | None, pids: Sequence[int], shipped_as: str) -> None:
+def frames_of(run: str) -> str:
+    """How the names of folders begin in which the actors of a run write frames that they send."""
+    return f"lightmesh-frames-{run}-"
+
+
+def clean(output: Path | None, pids: Sequence[int], shipped_as: str, run: str) -> None:
     """Waits for the end of actors, and removes what they have left: temporary files beside the output, folders of their own, and what was sent."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end and any(is_alive(pid) for pid in pids):
         time.sleep(0.02)
     if output is not None:
         _sweep(output)
-    for pid in pids:
-        shutil.rmtree(Path(tempfile.gettempdir()) / f"lightmesh-frames-{pid}", ignore_errors=True)
+    for left in Path(tempfile.gettempdir()).glob(f"{frames_of(run)}*") if run else ():
+        shutil.rmtree(left, ignore_errors=True)
     if shipped_as:
         shutil.rmtree(folder() / shipped_as, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            # Other runs may have files there.
+            folder().rmdir()
 
 
 def is_alive(pid: int) -> bool:

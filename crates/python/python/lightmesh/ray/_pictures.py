@@ -51,7 +51,7 @@ def picture(
     leader.report.notes = whole.notes
     try:
         files = Files(whole.inputs, None, ship)
-        job = Job(scene_path(scene), None, whole.request, files.digest, files.shipped_as, False, each.gpus)
+        job = Job(scene_path(scene), None, whole.request, files.digest, files.shipped_as, False, each.gpus, files.run)
         leader.begin(Setup(files, lambda _: job, lambda _: False))
         image, said = whole.render(lambda text: render(leader, text))
         leader.report.notes += [sentence for sentence in said if sentence not in leader.report.notes]

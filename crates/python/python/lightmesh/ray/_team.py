@@ -201,22 +201,26 @@ class Team:
         """An actor runs in this process, whose traces are removed in the end."""
         self.pids.setdefault(member.node.id, set()).add(pid)
 
-    def close(self, output: Path | None, shipped_as: str) -> None:
+    def close(self, output: Path | None, shipped_as: str, run: str) -> None:
         """Ends all actors, and cleans up on every node that is there."""
         try:
-            self._end(output, shipped_as)
+            self._end(output, shipped_as, run)
         except ray.exceptions.RayError as error:
             # What ended the run is told, not that its cluster is gone.
             logger.warning("the cluster cannot be cleaned up: %s", error)
-        _nodes.clean(output, [], "")
+        _nodes.clean(output, [], "", run)
 
-    def _end(self, output: Path | None, shipped_as: str) -> None:
+    def _end(self, output: Path | None, shipped_as: str, run: str) -> None:
+        calls_left = list(self.calls())
         for member in self.members:
             ray.kill(cast(Any, member.handle))
         self.members = []
+        if calls_left:
+            # They end with their actors: then nobody writes any more, nor does one that was still opening the scene.
+            ray.wait(calls_left, num_returns=len(calls_left), timeout=_nodes.PATIENCE)
         clean = ray.remote(num_cpus=0, max_retries=0)(_nodes.clean)
         calls = [
-            clean.options(scheduling_strategy=on(node)).remote(output, sorted(self.pids.get(node.id, ())), shipped_as)
+            clean.options(scheduling_strategy=on(node)).remote(output, sorted(self.pids.get(node.id, ())), shipped_as, run)
             for node in nodes()
             if node.id in self.pids or node.id in self.nodes
         ]
