@@ -64,7 +64,8 @@ pub fn render_together(
 ) -> Result<Frame, RenderError> {
     let start = Instant::now();
     let whole = settings.crop.unwrap_or(Crop::new([0, 0], settings.size));
-    if workers.len() == 1 || whole.size[1] == 0 {
+    let is_possible = whole.size[1] > 0 && whole.first[1].checked_add_unsigned(whole.size[1]).is_some();
+    if workers.len() == 1 || !is_possible {
         return workers[0].render(cache, scene, settings, observer);
     }
     let mut known = locked(&speeds.0).clone();
@@ -95,6 +96,7 @@ pub fn render_together(
     Ok(frame)
 }
 
+/// What they are called.
 pub(super) fn names(workers: &[&dyn Worker]) -> String {
     workers.iter().map(|worker| worker.name()).collect::<Vec<_>>().join(", ")
 }
@@ -126,6 +128,7 @@ impl Job<'_> {
     /// Renders bands until there is none left, or a failure.
     fn work(&self, number: usize, worker: &dyn Worker, mut cache: MeshCache) -> (Vec<Band>, MeshCache) {
         let mut bands = Vec::new();
+        let _stop = StopOnPanic(self.together);
         while let Some(rows) = self.together.take(number) {
             let start = Instant::now();
             let observer = ObserverOfBand { together: self.together, worker: number, rows: rows.len() as f64 };
@@ -160,11 +163,10 @@ impl Job<'_> {
             follows
         });
         let is_part = finished < height;
-        if let Some(error) = error.filter(|_| is_part && !(self.settings.partial && finished > 0)) {
-            return Err(error);
-        }
-        if is_part && (!self.settings.partial || finished == 0) {
-            return Err(RenderError::Cancelled);
+        match error.filter(|_| is_part) {
+            Some(error) if !matches!(error, RenderError::Cancelled) => return Err(error),
+            _ if is_part && !(self.settings.partial && finished > 0) => return Err(RenderError::Cancelled),
+            _ => {}
         }
         let mut stats = self.stats(&bands, is_part.then_some(finished));
         stats.counts.pixels = u64::from(self.whole.size[0]) * u64::from(finished);
@@ -345,6 +347,20 @@ impl<'a> Together<'a> {
     /// Whether a text was not told before.
     fn is_new(&self, text: &str) -> bool {
         locked(&self.state).texts.insert(text.to_owned())
+    }
+}
+
+/// Lets others end if a worker panics: they would wait for its rows.
+struct StopOnPanic<'a>(&'a Together<'a>);
+
+impl Drop for StopOnPanic<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.stopped.store(true, Ordering::Relaxed);
+            // Who is about to wait holds the lock.
+            drop(locked(&self.0.state));
+            self.0.changed.notify_all();
+        }
     }
 }
 

@@ -150,8 +150,15 @@ fn an_error_of_the_image_ends_all() {
         }),
     );
     let prepared = sound.prepare(&Scene::open("builtin:childpark").unwrap(), &settings(), &Unobserved).unwrap();
-    let failed = together(&[&sound, &frail], &prepared, &settings());
-    assert!(matches!(failed, Err(RenderError::Setting { .. })), "{failed:?}");
+    for settings in [settings(), settings().with_partial(true)] {
+        let failed = together(&[&sound, &frail], &prepared, &settings);
+        assert!(matches!(failed, Err(RenderError::Setting { .. })), "{failed:?}");
+    }
+    // One that has more rows than there are numbers.
+    let far = settings().with_crop(Crop::new([0, i32::MAX - 3], [4, 300]));
+    let errors =
+        [together(&[&sound, &renderer()], &prepared, &far), sound.render_prepared(&prepared, &far, &Unobserved)];
+    assert_eq!(errors[0].as_ref().err().map(ToString::to_string), errors[1].as_ref().err().map(ToString::to_string));
 }
 
 #[test]
