@@ -270,8 +270,8 @@ settings! {
     /// Give images depth, normals, positions, the light of each lamp, ids and Cryptomattes
     Layers "Image" layers: bool, bytes same;
 
-    /// Render on cpu, cuda (the first CUDA device that works), cuda:N, several (cuda:all, cuda:0,1, cuda:all,cpu) or auto, the
-    /// fastest that works; `lightmesh info --devices` lists them
+    /// Render on cpu, cuda (the first that works), cuda:N, several (cuda:all, cuda:0,1) or auto, the fastest; `lightmesh info
+    /// --devices` lists them
     Machine "Machine" device: Device, placeholder "DEVICE", bytes same;
 
     /// Use N CPU threads [default: all]

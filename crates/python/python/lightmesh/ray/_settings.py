@@ -107,7 +107,7 @@ class PictureRequest(TypedDict, total=False):
     grid_file: _Path | None
     """Load the grid that `lightmesh grid` saved; implies accel grid [default: none]"""
     device: str | None
-    """Render on cpu, cuda (the first CUDA device that works), cuda:N or auto, the fastest that works; `lightmesh info --devices` lists them [default: auto]"""
+    """Render on cpu, cuda (the first that works), cuda:N, several (cuda:all, cuda:0,1) or auto, the fastest; `lightmesh info --devices` lists them [default: auto]"""
     threads: int | None
     """Use N CPU threads [default: all]"""
 
