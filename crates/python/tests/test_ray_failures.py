@@ -34,7 +34,8 @@ def test_a_node_without_memory_leaves_its_units_to_others(cluster, tmp_path):
     assert files(tmp_path / "many") == files(tmp_path / "one")
     failures = [failure for failure in report.failures if "memory" in failure.message]
     (name,) = {failure.node for failure in failures}
-    assert 1 <= len(failures) <= _leader.MOST_REFUSALS and report.nodes[name].units == 0
+    # Of the two units that an actor holds, one may be refused after the node was given up.
+    assert 1 <= len(failures) <= _leader.MOST_REFUSALS + 1 and report.nodes[name].units == 0
     with pytest.raises(lightmesh.HostMemoryError, match="on node .*memory"):
         lightmesh.ray.film(SCENE, tmp_path / "f.#.png", turntable=4, memory_limit="1M", **FILM)
 
