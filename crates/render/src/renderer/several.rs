@@ -21,7 +21,7 @@ use crate::prepared::PreparedScene;
 use crate::settings::{Crop, Setting, Settings};
 use crate::sync::locked;
 
-/// Bands of fewer rows are rendered by one device, since they mostly repeat those around them.
+/// Bands have so many rows at least, but for the first and the last of a device: smaller ones mostly repeat those around them.
 const MIN_ROWS: u32 = 64;
 /// The first band of a device whose speed is not known is one part in this many, of so many rows at least.
 const FIRST: u32 = 64;
@@ -224,8 +224,6 @@ struct State {
     /// Bands that are being rendered.
     running: usize,
     workers: Vec<Known>,
-    /// Workers that have not failed.
-    left: usize,
     error: Option<RenderError>,
     /// What was told.
     texts: HashSet<String>,
@@ -254,16 +252,8 @@ impl Known {
 impl<'a> Together<'a> {
     fn new(speeds: impl Iterator<Item = Option<f64>>, rows: u32, observer: &'a dyn Observer) -> Together<'a> {
         let workers: Vec<Known> = speeds.map(|before| Known { before, ..Known::default() }).collect();
-        let state = State {
-            next: 0,
-            returned: Vec::new(),
-            running: 0,
-            left: workers.len(),
-            workers,
-            error: None,
-            texts: HashSet::new(),
-            told: 0.0,
-        };
+        let state =
+            State { next: 0, returned: Vec::new(), running: 0, workers, error: None, texts: HashSet::new(), told: 0.0 };
         let (changed, stopped) = (Condvar::new(), AtomicBool::new(false));
         Together { rows, start: Instant::now(), state: Mutex::new(state), changed, stopped, observer }
     }
@@ -300,9 +290,8 @@ impl<'a> Together<'a> {
     fn fail(&self, rows: Range<u32>, (number, worker): (usize, &dyn Worker), error: RenderError) {
         let mut state = locked(&self.state);
         state.running -= 1;
-        state.left -= 1;
         state.workers[number].failed = true;
-        if is_of_device(&error) && state.left > 0 {
+        if is_of_device(&error) && state.workers.iter().any(|known| !known.failed) {
             let rows_of_it = rows.len();
             state.returned.push(rows);
             drop(state);
