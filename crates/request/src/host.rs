@@ -122,15 +122,25 @@ impl Parts {
 
     /// The host of the next one.
     pub fn next<'a>(&self, host: &'a dyn Host) -> Part<'a> {
+        self.several(1, host)
+    }
+
+    /// The host of the next ones, of which so many are done at the same time.
+    pub(crate) fn several<'a>(&self, count: usize, host: &'a dyn Host) -> Part<'a> {
         let share = |index: usize| index as f64 / self.count.max(1) as f64;
         let done = self.took.len();
-        let (spent, shares) = (self.took.iter().sum(), [share(done), share(done + 1)]);
+        let (spent, shares) = (self.took.iter().sum(), [share(done), share(done + count)]);
         Part { others: self.whole(), ..Part::new(host, shares, spent) }
     }
 
     /// It took so many seconds.
     pub fn took(&mut self, seconds: f64) {
-        self.took.push(seconds);
+        self.several_took(1, seconds);
+    }
+
+    /// So many together took so many seconds.
+    pub(crate) fn several_took(&mut self, count: usize, seconds: f64) {
+        self.took.extend(std::iter::repeat_n(seconds / count as f64, count));
     }
 
     /// What all seem to take: the mean of all so far, and of the latest quarter, since some take longer than others and neighbours as long as each other.

@@ -55,6 +55,24 @@ impl Mesh {
         Ok(mesh)
     }
 
+    /// For each of several devices what it knows.
+    pub(crate) fn parted(&mut self, ids: &[Option<u64>]) -> Vec<Mesh> {
+        let parts = self.cache.parted(ids).into_iter();
+        parts.map(|cache| Mesh { cache, file: self.file.clone() }).collect()
+    }
+
+    /// What all of them know.
+    pub(crate) fn united(parts: impl Iterator<Item = Mesh>) -> Mesh {
+        let mut all = Mesh { cache: MeshCache::new(), file: None };
+        let take_file = |part: Mesh| {
+            all.file = part.file;
+            part.cache
+        };
+        let caches = parts.map(take_file).collect();
+        all.cache.unite(caches);
+        all
+    }
+
     /// Whether there is a file.
     pub(crate) fn has_file(&self) -> bool {
         self.file.is_some()

@@ -1,5 +1,6 @@
 //! The work on a plan: a scene that is opened, staged and prepared, and then rendered as a picture, a film or a sun study.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -9,7 +10,7 @@ use lightmesh_scene::Scene;
 use crate::cluster::staged;
 use crate::context::{Context, Prepared};
 use crate::error::{Error, RequestError};
-use crate::film::{self, FrameRange, FrameRenderer, FrameWriter, RenderedFrame};
+use crate::film::{self, Finished, FrameRange, FrameRenderer, FrameWriter, InFrame, RenderedFrame};
 use crate::host::{BUILDING, Host, Parts};
 use crate::mesh_file::Mesh;
 use crate::plan::Plan;
@@ -190,6 +191,7 @@ impl Session {
             load: self.load,
             parts: Parts::new(range.numbers.len()),
             left: range.numbers.into_iter(),
+            ahead: VecDeque::new(),
         })
     }
 
@@ -215,36 +217,69 @@ pub struct Frames {
     load: f64,
     parts: Parts,
     left: std::vec::IntoIter<u32>,
+    /// What several devices have rendered at the same time, in its order, and at last why there is no more.
+    ahead: VecDeque<Result<Finished, InFrame>>,
 }
 
 impl Frames {
-    /// Renders the next frame, and writes it; `None` after the last one. After an error there is none.
+    /// Renders the next frame, and writes it; `None` after the last one. After an error there is none. Several devices render as many frames, of which
+    /// later calls return the others.
     pub fn next(&mut self, renderer: &Renderer, host: &dyn Host) -> Option<Result<RenderedFrame, Error>> {
-        let start = Instant::now();
-        let part = self.parts.next(host);
-        let context = Context { renderer, plan: &self.plan, load: self.load, host: &part };
-        let Some(number) = self.left.next() else {
-            let closed = self.writer.take()?.close();
-            self.frames.save_mesh(host);
-            return closed.err().map(Err);
+        if self.ahead.is_empty() {
+            self.render_ahead(renderer, host);
+        }
+        let next = match self.ahead.pop_front() {
+            Some(finished) => {
+                let context = Context { renderer, plan: &self.plan, load: self.load, host };
+                finished.and_then(|finished| finished.written(self.writer.as_mut(), context))
+            }
+            None => match self.left.next() {
+                Some(number) => self.render(number, renderer, host),
+                None => {
+                    let closed = self.writer.take()?.close();
+                    self.frames.save_mesh(host);
+                    return closed.err().map(Err);
+                }
+            },
         };
+        Some(next.map_err(|InFrame { number, cause }| {
+            (self.left, self.ahead) = (Vec::new().into_iter(), VecDeque::new());
+            match self.writer.take() {
+                Some(writer) => writer.fail(number, *cause),
+                None => *cause,
+            }
+        }))
+    }
+
+    /// Renders a frame, and writes it.
+    fn render(&mut self, number: u32, renderer: &Renderer, host: &dyn Host) -> Result<RenderedFrame, InFrame> {
+        let (start, part) = (Instant::now(), self.parts.next(host));
+        let context = Context { renderer, plan: &self.plan, load: self.load, host: &part };
         let rendered = host.cancellable(|| match &mut self.writer {
             Some(writer) => writer.next(number, &mut self.frames, context),
             None => self.frames.render(number, context),
         });
         self.parts.took(start.elapsed().as_secs_f64());
-        Some(rendered.map_err(|cause| {
-            self.left = Vec::new().into_iter();
-            match self.writer.take() {
-                Some(writer) => writer.fail(number, cause),
-                None => cause,
-            }
-        }))
+        rendered.map_err(|cause| InFrame::new(number, cause))
+    }
+
+    /// Renders a frame on each of several devices, if there are as many.
+    fn render_ahead(&mut self, renderer: &Renderer, host: &dyn Host) {
+        let devices = film::devices(renderer);
+        if devices.len().min(self.left.len()) < 2 {
+            return;
+        }
+        let numbers: Vec<u32> = self.left.by_ref().take(devices.len()).collect();
+        let (start, part) = (Instant::now(), self.parts.several(numbers.len(), host));
+        let context = Context { renderer, plan: &self.plan, load: self.load, host: &part };
+        let (finished, all) = host.cancellable(|| film::render_ahead(&mut self.frames, &numbers, &devices, context));
+        self.ahead = finished.into_iter().map(Ok).chain(all.err().map(Err)).collect();
+        self.parts.several_took(numbers.len(), start.elapsed().as_secs_f64());
     }
 
     /// How many frames are left.
     pub fn left(&self) -> usize {
-        self.left.len()
+        self.left.len() + self.ahead.iter().filter(|finished| finished.is_ok()).count()
     }
 
     /// What is planned.

@@ -144,7 +144,7 @@ impl MeshCache {
 /// What is kept by one of several renderers that render parts of an image, see [`MeshCache::parted`].
 impl MeshCache {
     /// For each renderer a cache with what it knows: that of the host, or of the device with an id. What a file has is in all of them.
-    pub(crate) fn parted(&mut self, ids: &[Option<u64>]) -> Vec<MeshCache> {
+    pub fn parted(&mut self, ids: &[Option<u64>]) -> Vec<MeshCache> {
         let read = std::mem::take(&mut self.read);
         let part = |id: &Option<u64>| {
             let mut part = MeshCache { read: read.clone(), file: self.file.clone(), ..MeshCache::default() };
@@ -158,7 +158,7 @@ impl MeshCache {
     }
 
     /// Takes back what [`MeshCache::parted`] has given to renderers.
-    pub(crate) fn unite(&mut self, parts: Vec<MeshCache>) {
+    pub fn unite(&mut self, parts: Vec<MeshCache>) {
         for (number, mut part) in parts.into_iter().enumerate() {
             // All have the same; what one has asked for is in its own part.
             if number == 0 {

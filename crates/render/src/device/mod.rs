@@ -25,7 +25,7 @@ pub enum Device {
     /// A CUDA device: the first that works, or the one with this number. The driver lists the fastest first and, if
     /// CUDA_VISIBLE_DEVICES is set, only the devices it names.
     Cuda(Option<u32>),
-    /// Several, which render bands of one picture. It is the same picture.
+    /// Several, which render bands of one picture, or frames of one film. It is the same picture.
     Several(DeviceList),
 }
 

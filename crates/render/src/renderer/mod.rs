@@ -3,11 +3,13 @@
 //! [`resolve`] checks the settings and chooses what they leave open, [`crate::passes`] combines the stages, [`picture`] is the way of an image
 //! through them, and [`report`] describes what was done.
 
+pub mod crew;
 mod frame;
 mod picture;
 mod report;
 mod resolve;
 mod several;
+mod worker;
 
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -37,7 +39,8 @@ pub use frame::Frame;
 use picture::picture_on;
 use resolve::Resolved;
 use several::names;
-pub use several::{Speeds, Worker, render_together};
+pub use several::{Speeds, render_together};
+pub use worker::Worker;
 
 /// Renders scenes on one device, or on several.
 pub struct Renderer {
@@ -53,21 +56,32 @@ enum Engine {
     Cpu,
     /// A device and its backend. Images are rendered one after another: a device has one template in constant memory, and one set of counters.
     Cuda(Arc<Driver>, Box<Mutex<Cuda<Driver>>>),
-    /// A renderer for each of several devices.
-    Several(Vec<Renderer>, Speeds),
+    /// Several devices.
+    Several(Box<Several>),
 }
 
-impl Engine {
-    /// A renderer for each of several devices, which share so many threads.
-    fn several(choices: Vec<Choice>, threads: usize) -> Result<Engine, RenderError> {
+/// Several devices that work together.
+struct Several {
+    /// What one device does alone, this one does. A CUDA device if any is.
+    first: Arc<Renderer>,
+    workers: Vec<Box<dyn Worker>>,
+    speeds: Speeds,
+}
+
+impl Several {
+    /// Those that are chosen, which share so many threads.
+    fn of(choices: Vec<Choice>, threads: usize) -> Result<Several, RenderError> {
         let share = threads.div_ceil(choices.len().max(1)).max(2);
-        let renderers = choices.into_iter().map(|choice| Renderer::on(choice, Some(share)));
-        Ok(Engine::Several(renderers.collect::<Result<_, _>>()?, Speeds::default()))
+        let renderers = choices.into_iter().map(|choice| Renderer::on(choice, Some(share)).map(Arc::new));
+        let renderers = renderers.collect::<Result<Vec<_>, _>>()?;
+        let first = Arc::clone(&renderers[0]);
+        let workers = renderers.into_iter().map(|renderer| Box::new(renderer) as Box<dyn Worker>).collect();
+        Ok(Several { first, workers, speeds: Speeds::default() })
     }
-}
 
-fn workers(renderers: &[Renderer]) -> Vec<&dyn Worker> {
-    renderers.iter().map(|renderer| renderer as &dyn Worker).collect()
+    fn workers(&self) -> Vec<&dyn Worker> {
+        self.workers.iter().map(|worker| &**worker).collect()
+    }
 }
 
 impl Renderer {
@@ -96,16 +110,38 @@ impl Renderer {
     /// [`RenderError::Setting`] if the number of threads is invalid, [`RenderError::Threads`] if the threads cannot be
     /// started.
     pub fn on(choice: Choice, threads: Option<usize>) -> Result<Renderer, RenderError> {
-        resolve::check_threads(threads)?;
-        let threads = threads.map_or(0, resolve::worthwhile_threads);
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?;
+        let pool = pool_of(threads)?;
         let engine = match choice.chosen {
             Chosen::Cpu => Engine::Cpu,
             Chosen::Cuda(driver) => Engine::Cuda(Arc::clone(&driver), Box::new(Mutex::new(Cuda::new(driver)))),
-            Chosen::Several(choices) => Engine::several(choices, pool.current_num_threads())?,
+            Chosen::Several(choices) => Engine::Several(Several::of(choices, pool.current_num_threads())?.into()),
         };
-        Ok(Renderer { pool, engine, preparations: Preparations::default(), rows: Arc::default() })
+        Ok(Renderer::with(pool, engine))
+    }
+
+    /// A renderer by workers, with its own pool of `threads` threads. What cannot be shared, the `first` does, which is one of them.
+    ///
+    /// # Errors
+    /// As [`Renderer::on`].
+    pub fn together(
+        first: Arc<Renderer>,
+        workers: Vec<Box<dyn Worker>>,
+        threads: Option<usize>,
+    ) -> Result<Renderer, RenderError> {
+        let several = Several { first, workers, speeds: Speeds::default() };
+        Ok(Renderer::with(pool_of(threads)?, Engine::Several(several.into())))
+    }
+
+    fn with(pool: ThreadPool, engine: Engine) -> Renderer {
+        Renderer { pool, engine, preparations: Preparations::default(), rows: Arc::default() }
+    }
+
+    /// The devices that it renders on, each of which can render by itself: itself if it is one.
+    pub fn devices(&self) -> Vec<&dyn Worker> {
+        match &self.engine {
+            Engine::Cpu | Engine::Cuda(..) => vec![self],
+            Engine::Several(several) => several.workers(),
+        }
     }
 
     /// Renders one image of `scene`.
@@ -171,9 +207,7 @@ impl Renderer {
         match &self.engine {
             Engine::Cpu => Cpu.check_structure(acceleration),
             Engine::Cuda(device, _) => gpu::check_structure(&**device, acceleration),
-            Engine::Several(renderers, _) => {
-                renderers.iter().try_for_each(|renderer| renderer.check_structure(acceleration))
-            }
+            Engine::Several(several) => several.first.check_structure(acceleration),
         }
     }
 
@@ -183,10 +217,10 @@ impl Renderer {
             Engine::Cpu => Budget::new(settings.memory_limit),
             // The limit is that of the device's own memory.
             Engine::Cuda(..) => Budget::default(),
-            Engine::Several(renderers, _) if renderers.iter().any(|renderer| renderer.id().is_none()) => {
+            Engine::Several(several) if several.workers.iter().any(|worker| worker.id().is_none()) => {
                 Budget::new(settings.memory_limit)
             }
-            Engine::Several(..) => Budget::default(),
+            Engine::Several(_) => Budget::default(),
         }
     }
 
@@ -207,8 +241,9 @@ impl Renderer {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 picture_on(&*cuda, None, &self.rows, scene, settings, observer)
             }
-            Engine::Several(renderers, speeds) => {
-                render_together(&workers(renderers), speeds, (&mut MeshCache::new(), scene, settings), observer)
+            Engine::Several(several) => {
+                let work = (&mut MeshCache::new(), scene, settings);
+                render_together(&several.workers(), &several.speeds, work, observer)
             }
         })
     }
@@ -236,8 +271,8 @@ impl Renderer {
                 let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
                 points_on(&*cuda, &self.rows, &given, settings, observer)
             }
-            Engine::Several(renderers, _) => {
-                let first = &renderers[0];
+            Engine::Several(several) => {
+                let first = &several.first;
                 observer.note(&format!("points are computed on one device: {}", first.name()));
                 first.visibility(scene, points, normals, settings, observer)
             }
@@ -273,11 +308,19 @@ impl Renderer {
                 let cache = cache.device(cuda.pool().runtime().id());
                 picture_on(&*cuda, Some(cache), &self.rows, scene, settings, observer)
             }
-            Engine::Several(renderers, speeds) => {
-                render_together(&workers(renderers), speeds, (cache, scene, settings), observer)
+            Engine::Several(several) => {
+                render_together(&several.workers(), &several.speeds, (cache, scene, settings), observer)
             }
         })
     }
+}
+
+/// A pool of so many threads; `None`: one per logical CPU.
+fn pool_of(threads: Option<usize>) -> Result<ThreadPool, RenderError> {
+    resolve::check_threads(threads)?;
+    let threads = threads.map_or(0, resolve::worthwhile_threads);
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| RenderError::Threads { threads, reason: error.to_string() })
 }
 
 impl Worker for Renderer {
@@ -285,14 +328,14 @@ impl Worker for Renderer {
         match &self.engine {
             Engine::Cpu => Cpu.name(),
             Engine::Cuda(driver, _) => format!("{} (cuda:{})", driver.gpu().name, driver.number()),
-            Engine::Several(renderers, _) => names(&workers(renderers)),
+            Engine::Several(several) => names(&several.workers()),
         }
     }
 
     fn id(&self) -> Option<u64> {
         match &self.engine {
             Engine::Cuda(driver, _) => Some(driver.id()),
-            Engine::Cpu | Engine::Several(..) => None,
+            Engine::Cpu | Engine::Several(_) => None,
         }
     }
 

@@ -1,9 +1,9 @@
-//! The frames of a film: one scene in the memory of one device, and what is the same in two frames is kept from one to the next.
+//! The frames of a film: one scene in the memory of a device, and what is the same in two frames is kept from one to the next.
 
 use std::sync::Arc;
 use std::time::Duration;
 
-use lightmesh_render::{Crop, Frame, PreparedScene, Settings, Step};
+use lightmesh_render::{Crop, Frame, PreparedScene, Settings, Step, Worker};
 use lightmesh_scene::{Animation, Camera, Scene};
 
 use super::{FrameRange, Motion};
@@ -37,16 +37,27 @@ pub struct RenderedFrame {
 
 /// Renders the frames of a film in any order. What two frames in a row have in common is kept between them.
 pub struct FrameRenderer {
+    reel: Reel,
+    /// By device; of one at least.
+    kept: Vec<Kept>,
+}
+
+/// What is the same for all frames of a film.
+pub(super) struct Reel {
     plan: Arc<Plan>,
     motion: Motion,
     /// The film's last frame.
     last: u32,
     /// The scene at rest.
     base: PreparedScene,
-    /// The scene at the last frame that was rendered.
-    before: PreparedScene,
     settings: Settings,
     metering: Metering,
+}
+
+/// What a device keeps from frame to frame.
+pub(super) struct Kept {
+    /// The scene at the last frame that it has rendered.
+    before: PreparedScene,
     mesh: Mesh,
 }
 
@@ -59,40 +70,97 @@ impl FrameRenderer {
         let moves = matches!(motion, Motion::Scene(_)) && base.scene.animation().is_some_and(Animation::moves_surfaces);
         let mesh = Mesh::open(&plan, (context.renderer, &base), moves, context.host)?;
         let (settings, metering) = (plan.settings.clone(), prepared.metering.clone());
-        Ok(FrameRenderer { plan, motion, last: range.last, before: base.clone(), base, settings, metering, mesh })
+        let kept = vec![Kept { before: base.clone(), mesh }];
+        Ok(FrameRenderer { reel: Reel { plan, motion, last: range.last, base, settings, metering }, kept })
     }
 
     /// Whether the film has a shadow catcher, and how its frames are exposed.
     pub(crate) fn metering(&self) -> &Metering {
-        &self.metering
+        &self.reel.metering
     }
 
     /// Writes what is known of light points and gathered light, if there is a file for it.
-    pub(crate) fn save_mesh(&self, host: &dyn Host) {
-        self.mesh.save(&self.before, host);
+    pub(crate) fn save_mesh(&mut self, host: &dyn Host) {
+        let before = self.kept[0].before.clone();
+        let mesh = Mesh::united(self.kept.drain(..).map(|kept| kept.mesh));
+        mesh.save(&before, host);
+        self.kept.push(Kept { before, mesh });
     }
 
-    /// Renders a frame.
+    /// Renders a frame on all devices of the renderer.
     ///
     /// # Errors
     /// Those of the renderer, and those of surroundings.
     pub(crate) fn render(&mut self, number: u32, context: Context) -> Result<RenderedFrame, Error> {
-        let Context { renderer, host, .. } = context;
-        let (prepared, when) = self.at(number, context)?;
-        let cache = &mut self.mesh.cache;
+        self.reel.render(number, &mut self.kept[0], context.renderer, context)
+    }
+
+    /// For devices that render frames by themselves: what is the same for all, and what each of them keeps.
+    pub(super) fn on(&mut self, devices: &[&dyn Worker]) -> (&Reel, Vec<&mut Kept>) {
+        if let [first] = &mut self.kept[..] {
+            let ids: Vec<Option<u64>> = devices.iter().map(|device| device.id()).collect();
+            self.kept = first.parted(&ids);
+        }
+        (&self.reel, self.kept.iter_mut().collect())
+    }
+
+    /// Exposure and step for the whole film, from frames across it: whichever of them are rendered, and by however many runs.
+    pub(crate) fn chosen_across(&self, context: Context) -> Result<Chosen, Error> {
+        self.reel.chosen_across(context)
+    }
+
+    /// From now on, what was chosen for the film holds.
+    pub(crate) fn keep(&mut self, Chosen { exposure, step }: Chosen) {
+        let Reel { settings, metering, .. } = &mut self.reel;
+        if let Some(step) = step {
+            *settings = settings.clone().with_step(Step::Fixed(step));
+        }
+        if let Some(exposure) = exposure {
+            *metering = metering.clone().fixed(exposure);
+        }
+    }
+}
+
+impl Kept {
+    /// The same for each of several devices.
+    fn parted(&mut self, ids: &[Option<u64>]) -> Vec<Kept> {
+        let parts = self.mesh.parted(ids).into_iter();
+        parts.map(|mesh| Kept { before: self.before.clone(), mesh }).collect()
+    }
+}
+
+impl Reel {
+    /// Renders a frame on a device.
+    ///
+    /// # Errors
+    /// Those of the renderer, and those of surroundings.
+    pub(super) fn render(
+        &self,
+        number: u32,
+        kept: &mut Kept,
+        device: &dyn Worker,
+        context: Context,
+    ) -> Result<RenderedFrame, Error> {
+        let (prepared, when) = self.at(number, &kept.before, context)?;
+        let cache = &mut kept.mesh.cache;
         let render = |prepared: &PreparedScene, settings: &Settings, host: &dyn Host| {
-            renderer.render_with(cache, prepared, settings, host)
+            device.render(cache, prepared, settings, host)
         };
         let (frame, stops) = context.picture(&prepared, &self.settings, &self.metering, render)?;
-        self.mesh.check(host);
+        kept.mesh.check(context.host);
         let scene = prepared.scene.clone();
         // What the cache keeps of the frame before goes on to this one.
-        self.before = prepared;
+        kept.before = prepared;
         Ok(RenderedFrame { number, when, scene, frame, stops })
     }
 
-    /// The scene at a frame, and what the frame is called besides its number.
-    fn at(&self, number: u32, Context { renderer, host, .. }: Context) -> Result<(PreparedScene, String), Error> {
+    /// The scene at a frame, after the frame `before`, and what the frame is called besides its number.
+    fn at(
+        &self,
+        number: u32,
+        before: &PreparedScene,
+        Context { renderer, host, .. }: Context,
+    ) -> Result<(PreparedScene, String), Error> {
         match self.motion {
             Motion::Turntable(last) => {
                 Ok((self.base.with_cameras(vec![turned(&self.base, number, last)]), String::new()))
@@ -100,14 +168,14 @@ impl FrameRenderer {
             Motion::Sun(_) => sun::frame(&self.plan, &self.base, number),
             Motion::Scene(rate) => {
                 let scene = self.base.scene.at(rate.time(number));
-                let prepare = || renderer.prepare_moved(&self.before, &scene, &self.plan.settings, host);
+                let prepare = || renderer.prepare_moved(before, &scene, &self.plan.settings, host);
                 Ok((host.during(BUILDING, prepare)?, String::new()))
             }
         }
     }
 
     /// Exposure and step for the whole film, from frames across it: whichever of them are rendered, and by however many runs.
-    pub(crate) fn chosen_across(&self, context: Context) -> Result<Chosen, Error> {
+    fn chosen_across(&self, context: Context) -> Result<Chosen, Error> {
         let Context { renderer, host, .. } = context;
         let settings = &self.plan.settings;
         let asks_step = settings.has_light_points() && matches!(settings.step, None | Some(Step::Auto));
@@ -122,7 +190,7 @@ impl FrameRenderer {
             .collect();
         numbers.dedup();
         for &number in &numbers {
-            let (prepared, _) = self.at(number, context)?;
+            let (prepared, _) = self.at(number, &self.base, context)?;
             let render = |prepared: &PreparedScene, settings: &Settings, _: &dyn Host| {
                 renderer.render_prepared(prepared, settings, &quiet)
             };
@@ -145,16 +213,6 @@ impl FrameRenderer {
             host.note(&format!("step auto: using {step}, from {count} frames across the film"));
         }
         Ok(chosen)
-    }
-
-    /// From now on, what was chosen for the film holds.
-    pub(crate) fn keep(&mut self, Chosen { exposure, step }: Chosen) {
-        if let Some(step) = step {
-            self.settings = self.settings.clone().with_step(Step::Fixed(step));
-        }
-        if let Some(exposure) = exposure {
-            self.metering = self.metering.clone().fixed(exposure);
-        }
     }
 }
 
