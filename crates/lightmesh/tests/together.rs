@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::Duration;
 
-use lightmesh::render::{MeshCache, PreparedScene, Progress, Unobserved, Worker};
+use lightmesh::render::{Make, MeshCache, PreparedScene, Progress, Unobserved, Worker, waking};
 use lightmesh::request::files::Files;
 use lightmesh::request::{Error, FrameDone, Host, Order, Plan, Request, Session};
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, Settings};
@@ -66,7 +66,7 @@ impl Worker for Standin {
     }
 
     fn id(&self) -> Option<u64> {
-        None
+        Some(self.number as u64)
     }
 
     fn render(
@@ -286,6 +286,39 @@ fn the_frame_of_a_device_that_fails_goes_to_the_others() {
     for device in ["device 0", "device 2"] {
         assert!(notes.contains(&format!("{device} has failed; other devices take its frame ")), "{notes}");
     }
+}
+
+#[test]
+fn a_film_does_not_wait_for_a_device_that_wakes_and_is_joined_by_it() {
+    /// Goes on after some images when another device has begun one.
+    fn asks_for_help(number: usize, log: &Log) -> Result<(), RenderError> {
+        if number >= 4 {
+            log.wait_until(|events| events.begun > number + 1);
+        }
+        Ok(())
+    }
+    let folders = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let [one, all] = folders.each_ref().map(|folder| order(GAZEBO.as_ref(), folder.path(), &[("turntable", "12")]));
+    write(&one, &cpu(), &Unobserved).unwrap();
+    let host = several(&[]).1;
+    let standin = |number, before: Before, log: &Arc<Log>| {
+        Box::new(Standin { number, renderer: cpu(), rendered: Mutex::default(), before, log: Arc::clone(log) })
+    };
+    let log = Arc::clone(&host.log);
+    let late = move || {
+        log.wait_until(|events| events.written.len() >= 2);
+        Ok(standin(1, sound, &log) as Box<dyn Worker>)
+    };
+    let never = || Err(RenderError::Device { device: "cuda:2".to_owned(), reason: "its memory is used up".to_owned() });
+    let makes: Vec<(String, Make)> =
+        vec![("cuda:1".to_owned(), Box::new(late)), ("cuda:2".to_owned(), Box::new(never))];
+    let mut workers: Vec<Box<dyn Worker>> = vec![standin(0, asks_for_help, &host.log)];
+    workers.extend(waking(makes).unwrap());
+    let renderer = Renderer::together(cpu(), workers, Some(2)).unwrap();
+    write(&all, &renderer, &host).unwrap();
+    assert_eq!(contents(folders[0].path()), contents(folders[1].path()));
+    let notes = &host.log.events.lock().unwrap().notes;
+    assert_eq!(notes.iter().filter(|note| note.starts_with("device cuda:2 cannot be used: ")).count(), 1, "{notes:?}");
 }
 
 #[test]

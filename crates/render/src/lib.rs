@@ -80,7 +80,9 @@ pub use plan::{BytesPerRay, Plan};
 pub use prepared::{PreparedGeometry, PreparedScene};
 pub use probes::{GivenPoints, PointVisibility, Probes};
 pub use render_context::{RenderContext, Sampling};
-pub use renderer::{Frame, Renderer, Speeds, Worker, crew, render_on, render_on_with, render_together, visibility_on};
+pub use renderer::{
+    Frame, Make, Renderer, Speeds, Worker, crew, render_on, render_on_with, render_together, visibility_on, waking,
+};
 pub use settings::{
     Acceleration, AmbientSource, Crop, Filter, Glass, Lookup, Mode, Quality, Setting, SettingSet, Settings,
     ShadowTests, Sharing, ShortTests, Step, UnknownCrop, UnknownStep,

@@ -1,17 +1,16 @@
 //! From the requested device to one that is ready for use.
 
 use std::sync::Arc;
-use std::thread;
 
 use lightmesh_kernels::{DeviceError, Driver, Library, open_cuda};
 
-use super::report::{cpu, ready};
-use super::{Device, DeviceList};
+use super::report::{cpu, ready, unopened};
+use super::{Device, DeviceList, DeviceReport};
 use crate::error::RenderError;
 
 /// The result of choosing a [`Device`].
 pub struct Choice {
-    /// [`Device::Cpu`], [`Device::Cuda`] with a number, or [`Device::Several`] with those that work.
+    /// [`Device::Cpu`], [`Device::Cuda`] with a number, or [`Device::Several`] with the first that works and those that are tried later.
     pub device: Device,
     /// Which device it is.
     pub reason: String,
@@ -29,8 +28,18 @@ pub(crate) enum Chosen {
     Cpu,
     /// A CUDA device.
     Cuda(Arc<Driver>),
-    /// Each of several.
-    Several(Vec<Choice>),
+    /// Several.
+    Several(ChosenDevices),
+}
+
+/// Several devices.
+pub(crate) struct ChosenDevices {
+    /// The first one that works.
+    pub(crate) first: Box<Choice>,
+    /// The numbers of CUDA devices that are made while it works.
+    pub(crate) others: Vec<u32>,
+    /// Whether the CPU helps.
+    pub(crate) cpu: bool,
 }
 
 impl Choice {
@@ -48,43 +57,44 @@ impl Choice {
         }
     }
 
-    /// All that are listed; of all CUDA devices those that work.
+    /// All that are listed. The first CUDA device that works is made at once, others are only looked up.
     fn several(list: DeviceList) -> Result<Choice, RenderError> {
-        let numbers: Vec<u32> = match Library::open() {
-            Ok(library) if list.has_all_cuda() => library.devices.iter().map(|gpu| gpu.number).collect(),
-            _ => list.numbers().collect(),
-        };
-        // Each wakes while the others do.
-        let opened: Vec<Result<Arc<Driver>, DeviceError>> = thread::scope(|scope| {
-            let open = |&number| scope.spawn(move || open_cuda(Some(number)));
-            let opening: Vec<_> = numbers.iter().map(open).collect();
-            opening
-                .into_iter()
-                .map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-                .collect()
-        });
-        let (mut choices, mut unusable) = (Vec::new(), Vec::new());
-        for opened in opened {
-            match opened {
-                Ok(driver) => choices.push(Choice::cuda(driver)),
-                Err(error) if list.has_all_cuda() => unusable.push(format!("; {error}")),
-                Err(error) => return Err(error.into()),
-            }
-        }
-        if choices.is_empty() && list.has_all_cuda() {
+        let library = match Library::open() {
+            Ok(library) => library,
             // It says why.
-            choices.push(Choice::cuda(open_cuda(None)?));
+            Err(_) => return Ok(Choice::cuda(open_cuda(list.numbers().next())?)),
+        };
+        let is_listed = |number: u32| list.has_all_cuda() || list.numbers().any(|listed| listed == number);
+        let there: Vec<u32> = library.devices.iter().map(|gpu| gpu.number).collect();
+        if let Some(missing) = list.numbers().find(|number| !there.contains(number)) {
+            open_cuda(Some(missing))?;
         }
-        choices.extend(list.has_cpu().then(Choice::cpu));
-        if choices.len() == 1 && unusable.is_empty() {
-            return Ok(choices.remove(0));
+        let mut numbers = there.into_iter().filter(|&number| is_listed(number));
+        let mut unusable: Vec<DeviceError> = Vec::new();
+        let first = loop {
+            let Some(number) = numbers.next() else {
+                return Err(unusable.swap_remove(0).into());
+            };
+            match open_cuda(Some(number)) {
+                Ok(driver) => break Choice::cuda(driver),
+                Err(error) => unusable.push(error),
+            }
+        };
+        let (others, cpu): (Vec<u32>, bool) = (numbers.collect(), list.has_cpu());
+        if others.is_empty() && !cpu && unusable.is_empty() {
+            return Ok(first);
         }
-        let numbers: Vec<u32> = choices.iter().filter_map(|choice| choice.device.number()).collect();
-        let cuda = DeviceList::of_cuda(&numbers);
-        let device = cuda.map_or(Device::Cpu, |cuda| if list.has_cpu() { cuda.and_cpu() } else { cuda }.into());
-        let reasons: Vec<&str> = choices.iter().map(|choice| &*choice.reason).collect();
-        let reason = format!("{}{}", reasons.join(" and "), unusable.concat());
-        Ok(Choice { device, reason, no_cuda: None, misses_cuda: false, chosen: Chosen::Several(choices) })
+        let known = first.device.number().into_iter().chain(others.iter().copied()).collect::<Vec<_>>();
+        let cuda = DeviceList::of_cuda(&known);
+        let device = cuda.map_or(Device::Cpu, |cuda| if cpu { cuda.and_cpu() } else { cuda }.into());
+        let waking = library.devices.iter().filter(|gpu| others.contains(&gpu.number));
+        let mut reasons = vec![first.reason.clone()];
+        reasons.extend(waking.map(|gpu| Choice::reason(&unopened(gpu, library.version))));
+        reasons.extend(cpu.then(|| Choice::cpu().reason));
+        let unusable: String = unusable.iter().map(|error| format!("; {error}")).collect();
+        let reason = format!("{}{unusable}", reasons.join(" and "));
+        let chosen = Chosen::Several(ChosenDevices { first: first.into(), others, cpu });
+        Ok(Choice { device, reason, no_cuda: None, misses_cuda: false, chosen })
     }
 
     fn instead_of_cuda(error: DeviceError) -> Choice {
@@ -97,15 +107,17 @@ impl Choice {
     }
 
     fn cpu() -> Choice {
-        let report = cpu();
-        let reason = format!("{} ({}, {})", report.device, report.name, report.remark);
+        let reason = Choice::reason(&cpu());
         Choice { device: Device::Cpu, reason, no_cuda: None, misses_cuda: false, chosen: Chosen::Cpu }
     }
 
     fn cuda(driver: Arc<Driver>) -> Choice {
-        let report = ready(&driver);
+        let reason = Choice::reason(&ready(&driver));
         let device = Device::Cuda(Some(driver.number()));
-        let reason = format!("{} ({}, {})", report.device, report.name, report.remark);
         Choice { device, reason, no_cuda: None, misses_cuda: false, chosen: Chosen::Cuda(driver) }
+    }
+
+    fn reason(DeviceReport { device, name, remark, .. }: &DeviceReport) -> String {
+        format!("{device} ({name}, {remark})")
     }
 }

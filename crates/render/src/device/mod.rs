@@ -8,7 +8,7 @@ use std::fmt;
 use std::str::FromStr;
 
 pub use choice::Choice;
-pub(crate) use choice::Chosen;
+pub(crate) use choice::{Chosen, ChosenDevices};
 pub use list::DeviceList;
 pub(crate) use report::cpu_name;
 pub use report::{DeviceReport, devices};

@@ -58,6 +58,12 @@ pub(super) fn ready(driver: &Driver) -> DeviceReport {
     DeviceReport { usable: true, remark, free_bytes: free, ..described(driver.gpu(), driver.version()) }
 }
 
+/// A CUDA device of which nothing is known but what the driver says of it.
+pub(super) fn unopened(gpu: &Gpu, version: Version) -> DeviceReport {
+    let remark = facts(gpu, None, version, visible_devices().as_deref());
+    DeviceReport { remark, ..described(gpu, version) }
+}
+
 fn report(library: &Library, gpu: &Gpu) -> DeviceReport {
     match library.ready(gpu) {
         Ok(driver) => ready(&driver),

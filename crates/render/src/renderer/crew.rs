@@ -60,7 +60,10 @@ struct State<W, E> {
     team: Team,
     /// Parts that are being done.
     running: usize,
+    /// What ends the work.
     error: Option<E>,
+    /// What the last worker failed by whose part others took.
+    of_device: Option<E>,
     has_panicked: bool,
     /// What was told.
     texts: HashSet<String>,
@@ -114,8 +117,14 @@ impl Team {
         others.map(move |(_, known)| known.speed().unwrap_or(speed))
     }
 
-    fn is_lost(&self) -> bool {
-        self.0.iter().all(|known| known.failed)
+    /// Whether a worker has done anything.
+    pub fn has_worked(&self, worker: usize) -> bool {
+        self.0[worker].seconds > 0.0
+    }
+
+    /// How fast each is, if it is known.
+    pub fn speeds(&self) -> impl Iterator<Item = Option<f64>> {
+        self.0.iter().map(Known::speed)
     }
 }
 
@@ -129,8 +138,16 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
     /// Workers whose speeds may be known from earlier work.
     pub fn new(work: W, speeds: impl Iterator<Item = Option<f64>>, observer: &'a dyn Observer) -> Crew<'a, W, E> {
         let team = Team(speeds.map(|before| Known { before, ..Known::default() }).collect());
-        let state =
-            State { work, team, running: 0, error: None, has_panicked: false, texts: HashSet::new(), told: 0.0 };
+        let state = State {
+            work,
+            team,
+            running: 0,
+            error: None,
+            of_device: None,
+            has_panicked: false,
+            texts: HashSet::new(),
+            told: 0.0,
+        };
         let (changed, stopped) = (Condvar::new(), AtomicBool::new(false));
         Crew { start: Instant::now(), state: Mutex::new(state), changed, stopped, observer }
     }
@@ -165,14 +182,17 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
     }
 
     /// The next part for a worker; waits while others work, whose parts may come back. `None` if nothing is left, or all stop.
-    pub fn take(&self, worker: usize) -> Option<W::Part> {
+    pub fn take(&self, number: usize, worker: &dyn Worker) -> Option<W::Part> {
+        if !self.is_awake(number, worker) {
+            return None;
+        }
         let mut state = locked(&self.state);
         loop {
             if self.cancelled() {
                 return None;
             }
             let State { work, team, .. } = &mut *state;
-            if let Some(part) = work.take(worker, team) {
+            if let Some(part) = work.take(number, team) {
                 state.running += 1;
                 return Some(part);
             }
@@ -181,6 +201,31 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
             }
             state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
+    }
+
+    /// Whether a worker takes part. Waits until it is awake, or nobody needs it any more.
+    fn is_awake(&self, number: usize, worker: &dyn Worker) -> bool {
+        let is_over = || locked(&self.state).is_over(false) || self.cancelled();
+        let awake = worker.wake(&is_over);
+        if let Err(error) = &awake {
+            self.observer.note(&format!("{error}; other devices render its part"));
+        }
+        let is_awake = awake.unwrap_or(false);
+        if !is_awake {
+            self.lose(&mut locked(&self.state), number);
+        }
+        is_awake
+    }
+
+    /// A worker takes no more parts. If none is left, what the last one failed by ends the work.
+    fn lose(&self, state: &mut State<W, E>, number: usize) {
+        let known = &mut state.team.0[number];
+        (known.failed, known.current) = (true, 0.0);
+        if state.team.0.iter().all(|known| known.failed) {
+            state.error = state.error.take().or(state.of_device.take());
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+        self.changed.notify_all();
     }
 
     /// A worker has done so much in so many seconds, and puts it to the work.
@@ -198,22 +243,24 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
     pub fn fail(&self, part: W::Part, (number, worker): (usize, &dyn Worker), error: E) {
         let mut state = locked(&self.state);
         state.running -= 1;
-        let known = &mut state.team.0[number];
-        (known.failed, known.current) = (true, 0.0);
-        if error.is_of_device() && !state.team.is_lost() {
+        if error.is_of_device() {
             let (name, of_it) = (worker.name(), W::name(&part));
+            let text = format!("{name} has failed; other devices take its {of_it}, and render the rest: {error}");
             state.work.give_back(part);
+            state.of_device = Some(error);
+            self.lose(&mut state, number);
             drop(state);
-            self.observer
-                .note(&format!("{name} has failed; other devices take its {of_it}, and render the rest: {error}"));
+            if !self.stopped.load(Ordering::Relaxed) {
+                self.observer.note(&text);
+            }
         } else {
             // What ends all is told rather than that they were stopped for it.
             if state.error.is_none() || !error.is_cancelled() {
                 state.error = Some(error);
             }
             self.stopped.store(true, Ordering::Relaxed);
+            self.changed.notify_all();
         }
-        self.changed.notify_all();
     }
 
     /// All stop.
@@ -259,10 +306,10 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
         self.stopped.load(Ordering::Relaxed) || self.observer.cancelled()
     }
 
-    /// The work, how fast each was, and what has ended it if it is not done.
-    pub fn into_result(self) -> (W, Vec<Option<f64>>, Option<E>) {
+    /// The work, what is known of the workers, and what has ended it if it is not done.
+    pub fn into_result(self) -> (W, Team, Option<E>) {
         let State { work, team, error, .. } = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
-        (work, team.0.iter().map(Known::speed).collect(), error)
+        (work, team, error)
     }
 
     /// Whether a text was not told before.

@@ -9,6 +9,7 @@ mod picture;
 mod report;
 mod resolve;
 mod several;
+mod waking;
 mod worker;
 
 use std::path::Path;
@@ -25,7 +26,7 @@ use crate::backend::stage_runner::StageRunner;
 use crate::backend::{Backend, Cpu, Cuda};
 use crate::cache::{Cache, MeshCache, MeshFileError};
 use crate::data::visibility::Visibility;
-use crate::device::{Choice, Chosen, Device};
+use crate::device::{Choice, Chosen, ChosenDevices, Device};
 use crate::error::RenderError;
 use crate::gpu;
 use crate::observer::{Observer, Unobserved};
@@ -40,6 +41,7 @@ use picture::picture_on;
 use resolve::Resolved;
 use several::names;
 pub use several::{Speeds, render_together};
+pub use waking::{Make, waking};
 pub use worker::Worker;
 
 /// Renders scenes on one device, or on several.
@@ -69,13 +71,20 @@ struct Several {
 }
 
 impl Several {
-    /// Those that are chosen, which share so many threads.
-    fn of(choices: Vec<Choice>, threads: usize) -> Result<Several, RenderError> {
-        let share = threads.div_ceil(choices.len().max(1)).max(2);
-        let renderers = choices.into_iter().map(|choice| Renderer::on(choice, Some(share)).map(Arc::new));
-        let renderers = renderers.collect::<Result<Vec<_>, _>>()?;
-        let first = Arc::clone(&renderers[0]);
-        let workers = renderers.into_iter().map(|renderer| Box::new(renderer) as Box<dyn Worker>).collect();
+    /// Those that are chosen, which share so many threads. The first one is ready, and others wake.
+    fn of(ChosenDevices { first, others, cpu }: ChosenDevices, threads: usize) -> Result<Several, RenderError> {
+        let count = 1 + others.len() + usize::from(cpu);
+        let share = Some(threads.div_ceil(count).max(2));
+        let first = Arc::new(Renderer::on(*first, share)?);
+        let mut workers: Vec<Box<dyn Worker>> = vec![Box::new(Arc::clone(&first))];
+        if cpu {
+            workers.push(Box::new(Renderer::with_threads(Device::Cpu, share)?));
+        }
+        let make = |number| -> (String, Make) {
+            let device = Device::Cuda(Some(number));
+            (device.to_string(), Box::new(move || Ok(Box::new(Renderer::with_threads(device, share)?))))
+        };
+        workers.extend(waking(others.into_iter().map(make).collect())?);
         Ok(Several { first, workers, speeds: Speeds::default() })
     }
 
@@ -114,7 +123,7 @@ impl Renderer {
         let engine = match choice.chosen {
             Chosen::Cpu => Engine::Cpu,
             Chosen::Cuda(driver) => Engine::Cuda(Arc::clone(&driver), Box::new(Mutex::new(Cuda::new(driver)))),
-            Chosen::Several(choices) => Engine::Several(Several::of(choices, pool.current_num_threads())?.into()),
+            Chosen::Several(devices) => Engine::Several(Several::of(devices, pool.current_num_threads())?.into()),
         };
         Ok(Renderer::with(pool, engine))
     }
@@ -328,7 +337,7 @@ impl Worker for Renderer {
         match &self.engine {
             Engine::Cpu => Cpu.name(),
             Engine::Cuda(driver, _) => format!("{} (cuda:{})", driver.gpu().name, driver.number()),
-            Engine::Several(several) => names(&several.workers()),
+            Engine::Several(several) => names(several.workers()),
         }
     }
 

@@ -56,10 +56,11 @@ pub fn render_together(
     let work = |number, worker: &dyn Worker, cache| job.work(&crew, (number, worker), cache);
     let (caches, ()) = crew.run(workers, cache.parted(&ids), work, || ());
     cache.unite(caches);
-    let (rows, now, error) = crew.into_result();
-    *locked(&speeds.0) = now.into_iter().map(|speed| speed.map(|speed| speed * width)).collect();
+    let (rows, team, error) = crew.into_result();
+    *locked(&speeds.0) = team.speeds().map(|speed| speed.map(|speed| speed * width)).collect();
     let mut frame = job.joined(rows.bands, error)?;
-    frame.stats.device.name = names(workers);
+    let worked = workers.iter().enumerate().filter(|(number, _)| team.has_worked(*number));
+    frame.stats.device.name = names(worked.map(|(_, worker)| *worker));
     frame.stats.seconds.render = start.elapsed().as_secs_f64();
     if frame.stats.finished_rows.is_none() {
         observer.progress(Progress { done: 1.0, seconds: frame.stats.seconds.render, left: Some(0.0) });
@@ -68,8 +69,8 @@ pub fn render_together(
 }
 
 /// What they are called.
-pub(super) fn names(workers: &[&dyn Worker]) -> String {
-    workers.iter().map(|worker| worker.name()).collect::<Vec<_>>().join(", ")
+pub(super) fn names<'a>(workers: impl IntoIterator<Item = &'a dyn Worker>) -> String {
+    workers.into_iter().map(Worker::name).collect::<Vec<_>>().join(", ")
 }
 
 /// The rows of an image.
@@ -169,7 +170,7 @@ impl Job<'_> {
         (number, worker): (usize, &dyn Worker),
         mut cache: MeshCache,
     ) -> MeshCache {
-        while let Some(rows) = crew.take(number) {
+        while let Some(rows) = crew.take(number, worker) {
             let start = Instant::now();
             let observer = ObserverOfPart::new(crew, number, &rows);
             let settings = self.settings.clone().with_crop(self.crop(&rows));

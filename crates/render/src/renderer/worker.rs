@@ -29,7 +29,16 @@ pub trait Worker: Send + Sync {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError>;
 
-    /// Lets it ask again whether it is still needed, if it waits until it can work.
+    /// Waits until it can render, or it `is_over`, which is asked again after each [`Worker::nudge`]. `false`: it takes no part.
+    ///
+    /// # Errors
+    /// Why it never can render. That is said once; then it takes no part.
+    fn wake(&self, is_over: &dyn Fn() -> bool) -> Result<bool, RenderError> {
+        let _ = is_over;
+        Ok(true)
+    }
+
+    /// Lets those who wait for it ask again.
     fn nudge(&self) {}
 }
 
@@ -50,6 +59,10 @@ impl<W: Worker + ?Sized> Worker for Arc<W> {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         (**self).render(cache, scene, settings, observer)
+    }
+
+    fn wake(&self, is_over: &dyn Fn() -> bool) -> Result<bool, RenderError> {
+        (**self).wake(is_over)
     }
 
     fn nudge(&self) {

@@ -39,6 +39,7 @@ mod shadow_rays;
 mod textures;
 mod together;
 mod transmissive;
+mod waking;
 mod walls;
 
 use glam::Vec3;

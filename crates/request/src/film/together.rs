@@ -102,7 +102,7 @@ fn render(
     kept: &mut Kept,
     context: Context,
 ) {
-    while let Some(frame) = crew.take(number) {
+    while let Some(frame) = crew.take(number, device) {
         let start = Instant::now();
         let host = Recorder::new(ObserverOfPart::new(crew, number, &frame), context.host);
         let context = Context { host: &host, ..context };
@@ -261,12 +261,16 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
-    use lightmesh_render::Unobserved;
+    use lightmesh_render::{Device, Unobserved};
 
     use super::*;
 
     fn crew(most: usize, is_ordered: bool) -> Crew<'static, FrameQueue<u32>, InFrame> {
         Crew::new(FrameQueue::new(&[1, 2, 3, 5, 8], most, is_ordered), [None; 2].into_iter(), &Unobserved)
+    }
+
+    fn take(crew: &Crew<FrameQueue<u32>, InFrame>, device: usize) -> Option<u32> {
+        crew.take(device, &Renderer::with_threads(Device::Cpu, Some(1)).unwrap())
     }
 
     fn finish(crew: &Crew<FrameQueue<u32>, InFrame>, frame: u32) {
@@ -281,7 +285,7 @@ mod tests {
     fn a_movie_is_written_in_its_order_and_files_as_they_come() {
         for (is_ordered, order) in [(true, [None, Some(10), Some(20)]), (false, [Some(20), Some(10), None])] {
             let crew = crew(9, is_ordered);
-            assert_eq!([crew.take(0), crew.take(1)], [Some(1), Some(2)]);
+            assert_eq!([take(&crew, 0), take(&crew, 1)], [Some(1), Some(2)]);
             finish(&crew, 2);
             let first = next(&crew);
             finish(&crew, 1);
@@ -292,10 +296,10 @@ mod tests {
     #[test]
     fn a_device_that_is_far_ahead_waits_until_a_frame_is_written() {
         let crew = crew(2, true);
-        assert_eq!([crew.take(0), crew.take(1)], [Some(1), Some(2)]);
+        assert_eq!([take(&crew, 0), take(&crew, 1)], [Some(1), Some(2)]);
         finish(&crew, 2);
         thread::scope(|scope| {
-            let third = scope.spawn(|| crew.take(1));
+            let third = scope.spawn(|| take(&crew, 1));
             thread::sleep(Duration::from_millis(100));
             assert!(!third.is_finished());
             finish(&crew, 1);
@@ -310,11 +314,11 @@ mod tests {
     #[test]
     fn a_frame_that_comes_back_is_taken_first_and_what_is_left_is_cancelled() {
         let crew = crew(3, true);
-        assert_eq!([crew.take(0), crew.take(1), crew.take(0)], [Some(1), Some(2), Some(3)]);
+        assert_eq!([take(&crew, 0), take(&crew, 1), take(&crew, 0)], [Some(1), Some(2), Some(3)]);
         crew.change(|frames| frames.give_back(2));
-        assert_eq!(crew.take(0), Some(2));
+        assert_eq!(take(&crew, 0), Some(2));
         crew.stop();
-        assert_eq!(crew.take(0), None);
+        assert_eq!(take(&crew, 0), None);
         let (frames, _, error) = crew.into_result();
         assert!(frames.all_or(error).is_err_and(|error| error.number == 5 && error.is_cancelled()));
     }

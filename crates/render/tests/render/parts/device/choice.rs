@@ -1,4 +1,4 @@
-use lightmesh_render::{Choice, Device, RenderError};
+use lightmesh_render::{Choice, Device, DeviceList, RenderError};
 
 #[test]
 fn the_processor_can_always_be_chosen() {
@@ -21,6 +21,11 @@ fn what_is_left_open_is_decided_and_explained() {
 
 #[test]
 fn a_device_that_is_not_there_is_an_error() {
+    // Of several, all must be there.
+    assert!(matches!(
+        Choice::of(DeviceList::of_cuda(&[0, 63]).unwrap().into()),
+        Err(RenderError::Device { device, .. }) if ["cuda:0", "cuda:63"].contains(&&*device)
+    ));
     let refused = Choice::of(Device::Cuda(Some(4096)));
     let Err(RenderError::Device { device, reason }) = refused.map(|choice| choice.device) else {
         panic!("4097 devices")
