@@ -18,9 +18,9 @@ pub struct Frame {
     width: u32,
     height: u32,
     window: Window,
-    color: Vec<[f32; 3]>,
-    alpha: Option<Vec<f32>>,
-    layers: Option<Layers>,
+    pub(crate) color: Vec<[f32; 3]>,
+    pub(crate) alpha: Option<Vec<f32>>,
+    pub(crate) layers: Option<Layers>,
 }
 
 /// Where a frame lies in an image that it is a part of, or around one.
@@ -129,13 +129,7 @@ impl Frame {
     /// The part of `size` pixels from column and row `first` of the whole image on, with alpha and layers; `None` if the frame does not have
     /// all of it, or it has no pixel.
     pub fn cropped(&self, first: [i32; 2], size: [u32; 2]) -> Option<Self> {
-        let Window { first: start, whole } = self.window;
-        let own = [self.width, self.height];
-        let within = |axis: usize| {
-            let offset = u32::try_from(i64::from(first[axis]) - i64::from(start[axis])).ok()?;
-            (size[axis] > 0 && u64::from(offset) + u64::from(size[axis]) <= u64::from(own[axis])).then_some(offset)
-        };
-        let corner = [within(0)?, within(1)?].map(|offset| offset as usize);
+        let (whole, corner) = (self.window.whole, self.corner(first, size)?);
         let cut = Cut { corner, size: size.map(|pixels| pixels as usize), width: self.width as usize };
         let layers = self.layers.as_ref().map(|layers| Layers {
             depth: cut.of(&layers.depth),
@@ -288,7 +282,10 @@ struct Cut {
 impl Cut {
     fn of<T: Copy>(&self, plane: &[T]) -> Vec<T> {
         let ([x, y], [columns, rows]) = (self.corner, self.size);
-        plane.chunks_exact(self.width).skip(y).take(rows).flat_map(|row| &row[x..x + columns]).copied().collect()
+        let mut cut = Vec::with_capacity(if plane.is_empty() { 0 } else { columns * rows });
+        let all = plane.chunks_exact(self.width).skip(y).take(rows);
+        all.for_each(|row| cut.extend_from_slice(&row[x..x + columns]));
+        cut
     }
 }
 

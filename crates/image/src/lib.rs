@@ -57,12 +57,12 @@ mod jpg;
 mod load;
 mod matte;
 mod options;
+mod paste;
 #[cfg(feature = "png")]
 mod png;
 mod radiance;
 mod save;
 mod sizes;
-mod stack;
 mod transfer;
 
 pub use compare::{CompareError, Comparison, LinearDifference, compare, compare_linear};

@@ -34,15 +34,19 @@ impl Frame {
 
     /// A part of the image, with what was finished of it; `None` if the frame does not have all of it.
     pub fn cropped(self, crop: Crop) -> Option<Frame> {
-        let Crop { first: [x, y], size: [width, height] } = crop;
-        let above = y.saturating_sub(self.image.window().first[1]).max(0) as u32;
-        let finished = self.finished_rows().saturating_sub(above).min(height);
+        let (Crop { first: [x, y], size: [width, height] }, finished) = (crop, self.finished_rows_of(crop));
         let is_whole = self.image.window().first == crop.first && self.size() == crop.size;
         let image = if is_whole { self.image } else { self.image.cropped(crop.first, crop.size)? };
         let mut stats = self.stats;
         stats.settings.crop = Some([x.into(), y.into(), width.into(), height.into()]);
         stats.finished_rows = (finished < height).then_some(finished);
         Some(Frame { image, stats })
+    }
+
+    /// The number of finished rows of a part of the image, from its top.
+    pub(crate) fn finished_rows_of(&self, Crop { first: [_, y], size: [_, height] }: Crop) -> u32 {
+        let above = y.saturating_sub(self.image.window().first[1]).max(0) as u32;
+        self.finished_rows().saturating_sub(above).min(height)
     }
 
     /// Linear colours, row-major, row 0 at the top.

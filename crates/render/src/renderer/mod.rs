@@ -37,7 +37,7 @@ use crate::render_context::RenderContext;
 use crate::settings::{Acceleration, Settings};
 use crate::shadow::rows::KnownRows;
 pub use frame::Frame;
-use picture::picture_on;
+use picture::{picture_around, picture_on};
 use resolve::Resolved;
 use several::names;
 pub use several::{Speeds, render_together};
@@ -356,6 +356,24 @@ impl Worker for Renderer {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         self.render_with(cache, scene, settings, observer)
+    }
+
+    fn render_around(
+        &self,
+        cache: &mut MeshCache,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        self.pool.install(|| match &self.engine {
+            Engine::Cpu => picture_around(&Cpu, Some(cache.host()), &self.rows, scene, settings, observer),
+            Engine::Cuda(_, cuda) => {
+                let cuda = cuda.lock().unwrap_or_else(PoisonError::into_inner);
+                let cache = cache.device(cuda.pool().runtime().id());
+                picture_around(&*cuda, Some(cache), &self.rows, scene, settings, observer)
+            }
+            Engine::Several(_) => self.render_with(cache, scene, settings, observer),
+        })
     }
 }
 

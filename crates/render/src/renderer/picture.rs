@@ -33,6 +33,18 @@ use crate::stats::Stats;
 /// Renders one image, with the `cache` of this backend, and the rows of samples that images share.
 pub(super) fn picture_on<B: Backend>(
     backend: &B,
+    cache: Option<&mut Cache<B::Table>>,
+    rows: &Arc<KnownRows>,
+    scene: &PreparedScene,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<Frame, RenderError> {
+    crop(picture_around(backend, cache, rows, scene, settings, observer)?, settings.crop)
+}
+
+/// The same with the pixels around on which those that were asked for depend: they are not exact.
+pub(super) fn picture_around<B: Backend>(
+    backend: &B,
     mut cache: Option<&mut Cache<B::Table>>,
     rows: &Arc<KnownRows>,
     scene: &PreparedScene,
@@ -52,7 +64,7 @@ pub(super) fn picture_on<B: Backend>(
     }
     let seconds = start.elapsed().as_secs_f64();
     let stats = report::stats(&context, &resolved, DeviceFacts::of(backend), rows_at_once, seconds);
-    crop(develop(picture, &resolved, stats), settings.crop)
+    Ok(develop(picture, &resolved, stats))
 }
 
 /// An image of which nothing is finished.

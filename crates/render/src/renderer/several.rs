@@ -3,7 +3,7 @@
 //! A band is a crop of the image, and crops have the bytes of the image: so it does not matter who renders which, nor how they are cut. Each device
 //! takes half of what it could do of the rest, by its speed so far, so that all end together; one that would take longer for a band than the others
 //! for all that is left takes none. What it knows of light points and gathered light it keeps from band to band. The rows of a device that fails go
-//! to the others.
+//! to the others. Finished bands are copied into the image while the rest is rendered, once and by all threads.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -18,6 +18,7 @@ use crate::error::RenderError;
 use crate::observer::{Observer, Progress};
 use crate::prepared::PreparedScene;
 use crate::settings::{Crop, Settings};
+use crate::stats::Stats;
 use crate::sync::locked;
 
 /// Bands have so many rows at least, but for the first and the last of a device: smaller ones mostly repeat those around them.
@@ -49,16 +50,23 @@ pub fn render_together(
     let mut known = locked(&speeds.0).clone();
     known.resize(workers.len(), None);
     let width = f64::from(whole.size[0].max(1));
-    let rows = Rows { all: whole.size[1], next: 0, returned: Vec::new(), bands: Vec::new() };
+    let rows = Rows { all: whole.size[1], next: 0, returned: Vec::new(), finished: Vec::new() };
     let crew = Crew::new(rows, known.iter().map(|speed| speed.map(|speed| speed / width)), observer);
     let ids: Vec<Option<u64>> = workers.iter().map(|worker| worker.id()).collect();
     let job = Job { scene, settings, whole };
     let work = |number, worker: &dyn Worker, cache| job.work(&crew, (number, worker), cache);
-    let (caches, ()) = crew.run(workers, cache.parted(&ids), work, || ());
+    let join = || {
+        let mut joined = Joined::default();
+        while let Some(band) = crew.wait_for(Rows::finished) {
+            joined.put(band, &job);
+        }
+        joined
+    };
+    let (caches, joined) = crew.run(workers, cache.parted(&ids), work, join);
     cache.unite(caches);
-    let (rows, team, error) = crew.into_result();
+    let (_, team, error) = crew.into_result();
     *locked(&speeds.0) = team.speeds().map(|speed| speed.map(|speed| speed * width)).collect();
-    let mut frame = job.joined(rows.bands, error)?;
+    let mut frame = joined.into_frame(&job, error)?;
     let worked = workers.iter().enumerate().filter(|(number, _)| team.has_worked(*number));
     frame.stats.device.name = names(worked.map(|(_, worker)| *worker));
     frame.stats.seconds.render = start.elapsed().as_secs_f64();
@@ -80,8 +88,16 @@ struct Rows {
     next: u32,
     /// Rows that failed.
     returned: Vec<Range<u32>>,
-    /// What is rendered.
-    bands: Vec<Band>,
+    /// Bands that nobody has joined to others.
+    finished: Vec<Band>,
+}
+
+impl Rows {
+    /// A finished band; `None` in it if there will be none.
+    fn finished(&mut self, is_over: bool) -> Option<Option<Band>> {
+        let band = self.finished.pop();
+        (band.is_some() || is_over).then_some(band)
+    }
 }
 
 impl Work for Rows {
@@ -141,17 +157,12 @@ impl Failure for RenderError {
     }
 }
 
-/// A finished band, or the finished rows of one that was stopped.
+/// A band.
 struct Band {
-    /// Its first row in what is rendered.
-    first: u32,
+    /// Its rows that are finished, in what is rendered.
+    rows: Range<u32>,
+    /// With what may be around them.
     frame: Frame,
-}
-
-impl Band {
-    fn end(&self) -> u32 {
-        self.first + self.frame.finished_rows()
-    }
 }
 
 /// The image that all workers work on.
@@ -173,11 +184,14 @@ impl Job<'_> {
         while let Some(rows) = crew.take(number, worker) {
             let start = Instant::now();
             let observer = ObserverOfPart::new(crew, number, &rows);
-            let settings = self.settings.clone().with_crop(self.crop(&rows));
-            match worker.render(&mut cache, self.scene, &settings, &observer) {
+            let part = self.crop(&rows);
+            let settings = self.settings.clone().with_crop(part);
+            match worker.render_around(&mut cache, self.scene, &settings, &observer) {
                 Ok(frame) => {
-                    let done = (f64::from(frame.finished_rows()), start.elapsed().as_secs_f64());
-                    crew.finish(number, done, |all| all.bands.push(Band { first: rows.start, frame }));
+                    let finished = frame.finished_rows_of(part);
+                    let rows = rows.start..rows.start + finished;
+                    let done = (f64::from(finished), start.elapsed().as_secs_f64());
+                    crew.finish(number, done, |all| all.finished.push(Band { rows, frame }));
                 }
                 Err(error) => {
                     crew.fail(rows, (number, worker), error);
@@ -192,57 +206,67 @@ impl Job<'_> {
         let Crop { first: [x, y], size: [width, _] } = self.whole;
         Crop::new([x, y + rows.start as i32], [width, rows.len() as u32])
     }
+}
+
+/// What is joined of an image while the rest is rendered.
+#[derive(Default)]
+struct Joined {
+    image: Option<lightmesh_image::Frame>,
+    bands: Vec<(Range<u32>, Stats)>,
+}
+
+impl Joined {
+    /// Adds the rows of a band that are finished.
+    fn put(&mut self, Band { rows, frame }: Band, job: &Job) {
+        if rows.is_empty() {
+            return;
+        }
+        let (whole, part) = (job.whole, job.crop(&rows));
+        let blank = || lightmesh_image::Frame::around(&frame.image, whole.first, whole.size).expect("it has the band");
+        let fits = self.image.get_or_insert_with(blank).put(&frame.image, part.first, part.size);
+        assert!(fits, "bands of one image fit");
+        self.bands.push((rows, frame.stats));
+    }
 
     /// The frame of all bands. Of an image that was stopped, the finished rows from the top if these are asked for.
-    fn joined(&self, mut bands: Vec<Band>, error: Option<RenderError>) -> Result<Frame, RenderError> {
-        let height = self.whole.size[1];
-        bands.sort_by_key(|band| band.first);
+    fn into_frame(mut self, job: &Job, error: Option<RenderError>) -> Result<Frame, RenderError> {
+        let height = job.whole.size[1];
+        self.bands.sort_by_key(|(rows, _)| rows.start);
         let mut finished = 0;
-        bands.retain(|band| {
-            let follows = band.first == finished;
-            finished = if follows { band.end() } else { finished };
+        self.bands.retain(|(rows, _)| {
+            let follows = rows.start == finished;
+            finished = if follows { rows.end } else { finished };
             follows
         });
         let is_part = finished < height;
         match error.filter(|_| is_part) {
-            Some(error) if !matches!(error, RenderError::Cancelled) => return Err(error),
-            _ if is_part && !(self.settings.partial && finished > 0) => return Err(RenderError::Cancelled),
+            Some(error) if !error.is_cancelled() => return Err(error),
+            _ if is_part && !job.settings.partial => return Err(RenderError::Cancelled),
             _ => {}
         }
-        let mut stats = self.stats(&bands, is_part.then_some(finished));
-        stats.counts.pixels = u64::from(self.whole.size[0]) * u64::from(finished);
-        let mut images: Vec<lightmesh_image::Frame> = Vec::new();
-        for Band { first, frame } in bands {
-            let rows = frame.finished_rows();
-            let crop = self.crop(&(first..first + rows));
-            let whole = rows == frame.image.height();
-            images.push(if whole {
-                frame.image
-            } else {
-                frame.image.cropped(crop.first, crop.size).expect("it has them")
-            });
-        }
+        let stats = self.stats(job, is_part.then_some(finished)).ok_or(RenderError::Cancelled)?;
+        let mut image = self.image.ok_or(RenderError::Cancelled)?;
         if is_part {
-            let rest = self.settings.clone().with_crop(self.crop(&(finished..height)));
-            images.push(unfinished(self.scene, &rest)?);
+            let rest = job.crop(&(finished..height));
+            let unfinished = unfinished(job.scene, &job.settings.clone().with_crop(rest))?;
+            assert!(image.put(&unfinished, rest.first, rest.size), "it is of the same image");
         }
-        let image = lightmesh_image::Frame::stacked(images).expect("bands of one image fit");
         Ok(Frame { image, stats })
     }
 
-    fn stats(&self, bands: &[Band], finished_rows: Option<u32>) -> crate::stats::Stats {
-        let all = || bands.iter().map(|band| &band.frame.stats);
-        let mut stats = bands[0].frame.stats.clone();
+    /// `None` if there are no bands.
+    fn stats(&self, job: &Job, finished_rows: Option<u32>) -> Option<Stats> {
+        let all = || self.bands.iter().map(|(_, stats)| stats);
+        let mut stats = all().next()?.clone();
+        let Crop { first: [x, y], size: [width, height] } = job.whole;
         stats.finished_rows = finished_rows;
-        stats.settings.crop = self.settings.crop.and(Some({
-            let Crop { first: [x, y], size: [width, height] } = self.whole;
-            [x.into(), y.into(), width.into(), height.into()]
-        }));
+        stats.settings.crop = job.settings.crop.and(Some([x.into(), y.into(), width.into(), height.into()]));
         if all().any(|other| other.device.kind != stats.device.kind) {
             (stats.device.kind, stats.settings.device) = ("cuda,cpu", "cuda,cpu");
         }
         stats.settings.rows_per_band = all().map(|stats| stats.settings.rows_per_band).max().unwrap_or(0);
         all().skip(1).for_each(|other| stats.add(other));
-        stats
+        stats.counts.pixels = u64::from(width) * u64::from(finished_rows.unwrap_or(height));
+        Some(stats)
     }
 }

@@ -122,6 +122,11 @@ impl Waking {
     fn worker(&self) -> Option<&dyn Worker> {
         self.place().worker.get().map(|worker| &**worker)
     }
+
+    fn awake(&self) -> Result<&dyn Worker, RenderError> {
+        let asleep = || RenderError::Device { device: self.name.clone(), reason: "it is not there yet".to_owned() };
+        self.worker().ok_or_else(asleep)
+    }
 }
 
 impl Worker for Waking {
@@ -159,9 +164,16 @@ impl Worker for Waking {
         settings: &Settings,
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
-        match self.worker() {
-            Some(worker) => worker.render(cache, scene, settings, observer),
-            None => Err(RenderError::Device { device: self.name.clone(), reason: "it is not there yet".to_owned() }),
-        }
+        self.awake()?.render(cache, scene, settings, observer)
+    }
+
+    fn render_around(
+        &self,
+        cache: &mut MeshCache,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        self.awake()?.render_around(cache, scene, settings, observer)
     }
 }

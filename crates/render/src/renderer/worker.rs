@@ -29,6 +29,20 @@ pub trait Worker: Send + Sync {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError>;
 
+    /// Renders a part of an image to be put together with others. The frame may have pixels around that part, which are not exact.
+    ///
+    /// # Errors
+    /// As [`Worker::render`].
+    fn render_around(
+        &self,
+        cache: &mut MeshCache,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        self.render(cache, scene, settings, observer)
+    }
+
     /// Waits until it can render, or it `is_over`, which is asked again after each [`Worker::nudge`]. `false`: it takes no part.
     ///
     /// # Errors
@@ -59,6 +73,16 @@ impl<W: Worker + ?Sized> Worker for Arc<W> {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         (**self).render(cache, scene, settings, observer)
+    }
+
+    fn render_around(
+        &self,
+        cache: &mut MeshCache,
+        scene: &PreparedScene,
+        settings: &Settings,
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        (**self).render_around(cache, scene, settings, observer)
     }
 
     fn wake(&self, is_over: &dyn Fn() -> bool) -> Result<bool, RenderError> {

@@ -58,28 +58,30 @@ impl Pass {
         bands.sort_by_key(|band| band.first);
         let [x, y, width, height] = self.area;
         let lacks = || ClusterError::Bands { rows: height };
-        let mut next = y;
-        for band in &bands {
-            let rows = band.color.len() as i64 / width.max(1);
-            if band.first != next || rows * width != band.color.len() as i64 {
-                return Err(lacks());
-            }
-            next += rows;
-        }
         let mut stats = bands.first().ok_or_else(lacks)?.stats.clone();
         bands[1..].iter().for_each(|band| stats.add(&band.stats));
         // What bands look at around them is not counted.
         stats.counts.pixels = width.unsigned_abs() * height.unsigned_abs();
         stats.settings.crop = self.is_part.then_some(self.area);
         let has_alpha = bands.iter().all(|band| band.alpha.is_some());
-        let (mut color, mut alpha) = (Vec::new(), Vec::new());
-        for band in bands {
-            color.extend(band.color);
-            alpha.extend(band.alpha.unwrap_or_default());
+        let (mut image, mut next) = (None, y);
+        for Band { first, color, alpha, .. } in bands {
+            let rows = color.len() as i64 / width.max(1);
+            let [columns, count] = [width, rows].map(|side| side as u32);
+            let part = image::Frame::new(columns, count, color).map_err(|_| lacks())?;
+            let part = part.with_window([x as i32, first as i32], size);
+            let part = match alpha.filter(|_| has_alpha) {
+                Some(alpha) => part.with_alpha(alpha).map_err(|_| lacks())?,
+                None => part,
+            };
+            let blank = || image::Frame::around(&part, [x as i32, y as i32], [columns, height as u32]);
+            let all = image.get_or_insert_with(blank).as_mut().ok_or_else(lacks)?;
+            if first != next || !all.put(&part, part.window().first, [columns, count]) {
+                return Err(lacks());
+            }
+            next += rows;
         }
-        let frame = image::Frame::new(width as u32, height as u32, color).map_err(|_| lacks())?;
-        let frame = if has_alpha { frame.with_alpha(alpha).map_err(|_| lacks())? } else { frame };
-        let frame = if self.is_part { frame.with_window([x as i32, y as i32], size) } else { frame };
-        Ok(Frame { image: frame, stats })
+        let image = image.flatten().filter(|_| next == y + height).ok_or_else(lacks)?;
+        Ok(Frame { image, stats })
     }
 }

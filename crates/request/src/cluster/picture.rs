@@ -87,7 +87,9 @@ impl BandedPicture {
                     background: background.map(|radiance| radiance.to_array()),
                 };
                 number += 1;
-                pass.assemble(render(&pass)?, settings.size).map_err(|error| E::from(error.into()))
+                let bands = render(&pass)?;
+                let assembled = self.renderer.install(|| pass.assemble(bands, settings.size));
+                assembled.map_err(|error| E::from(error.into()))
             })?;
         frame.stats.seconds.load = self.load;
         Ok((frame, stops))

@@ -101,25 +101,38 @@ fn parts_of_an_image_become_the_image() {
     let frame = Frame::new(3, 10, color).unwrap().with_layers(planes).unwrap().with_alpha(vec![0.5; 30]).unwrap();
     let frame = frame.with_window([7, -2], [20, 10]);
     let rows = |first: i32, count: u32| frame.cropped([7, first], [3, count]).unwrap();
-    assert_eq!(Frame::stacked(vec![rows(-2, 4), rows(2, 1), rows(3, 5)]), Some(frame.clone()));
-    assert_eq!(Frame::stacked(vec![frame.clone()]), Some(frame.clone()));
-    // None; a gap; the wrong order; other columns; other planes; other names.
-    let renamed = |mut part: Frame| {
+    let mut all = Frame::around(&rows(2, 1), [7, -2], [3, 10]).unwrap();
+    assert_eq!((all.window(), all.pixel(2, 9)), (frame.window(), Some([0.0; 3])));
+    // In any order, without what a part has around.
+    for (part, first, count) in [(rows(2, 6), 3, 5), (rows(-2, 5), -2, 4), (rows(1, 2), 2, 1)] {
+        assert_ne!(all, frame);
+        assert!(all.put(&part, [7, first], [3, count]));
+    }
+    assert_eq!(all, frame);
+    // Columns, too.
+    let mut all = Frame::around(&frame, [7, -2], [3, 10]).unwrap();
+    assert!((7..10).all(|column| all.put(&frame.cropped([column, -2], [1, 10]).unwrap(), [column, -2], [1, 10])));
+    assert_eq!(all, frame);
+    // Pixels that the part does not have, or the frame; none; another image; other planes; other names.
+    let renamed = |part: Frame| {
         let mut planes = part.layers().unwrap().clone();
         planes.object.names = vec!["ball".to_owned()];
-        part = part.with_layers(planes).unwrap();
-        part
+        part.with_layers(planes).unwrap()
     };
     let bare = Frame::new(3, 1, vec![[0.0; 3]; 3]).unwrap().with_window([7, 2], [20, 10]);
     let wrong = [
-        vec![],
-        vec![rows(-2, 4), rows(3, 5)],
-        vec![rows(2, 1), rows(-2, 4)],
-        vec![rows(-2, 4), frame.cropped([8, 2], [2, 1]).unwrap()],
-        vec![rows(-2, 4), bare],
-        vec![rows(-2, 4), renamed(rows(2, 1))],
+        (rows(2, 1), [7, 2], [3, 2]),
+        (frame.clone().with_window([7, 3], [20, 10]), [7, 7], [3, 2]),
+        (rows(2, 1), [6, 2], [3, 1]),
+        (rows(2, 1), [7, 2], [3, 0]),
+        (rows(2, 1).with_window([7, 2], [21, 10]), [7, 2], [3, 1]),
+        (bare.clone(), [7, 2], [3, 1]),
+        (bare.with_alpha(vec![0.5; 3]).unwrap(), [7, 2], [3, 1]),
+        (renamed(rows(2, 1)), [7, 2], [3, 1]),
     ];
-    for parts in wrong {
-        assert_eq!(Frame::stacked(parts), None);
+    for (part, first, size) in wrong {
+        assert!(!all.put(&part, first, size), "{first:?} {size:?}");
     }
+    assert_eq!(all, frame);
+    assert_eq!(Frame::around(&frame, [0, 0], [0, 3]), None);
 }
