@@ -180,10 +180,10 @@ impl Renderer {
         Ok(frame)
     }
 
-    /// The frames of a film of `scene`: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, and `len` says how many are
-    /// left. With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and `mesh_file`, each is written before it is returned; `resume`
-    /// goes on with a film of which some frames are there. `lights`, one or a sequence, stand in for the scene's. `progress` is called now and then
-    /// with the share of the whole film, and `cancel` stops it.
+    /// The frames of a film of `scene`: by `turntable`, `sun`, `frames` or `fps`. Iterate over it to render them one by one, or as many at the same
+    /// time as there are GPUs; `len` says how many are left. With `output`, as in "film.####.png" or "film.mp4", and `layers_file`, `stats` and
+    /// `mesh_file`, each is written before it is returned; `resume` goes on with a film of which some frames are there. `lights`, one or a sequence,
+    /// stand in for the scene's. `progress` is called now and then with the share of the whole film, and `cancel` stops it.
     ///
     /// Settings:
     #[doc = include_str!("docs/film.txt")]

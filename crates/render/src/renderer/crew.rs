@@ -64,7 +64,8 @@ struct State<W, E> {
     error: Option<E>,
     /// What the last worker failed by whose part others took.
     of_device: Option<E>,
-    has_panicked: bool,
+    /// How many workers have ended.
+    ended: usize,
     /// What was told.
     texts: HashSet<String>,
     /// The share that was told.
@@ -130,7 +131,7 @@ impl Team {
 
 impl<W: Work, E> State<W, E> {
     fn is_over(&self, cancelled: bool) -> bool {
-        self.has_panicked || self.running == 0 && (cancelled || self.work.is_taken())
+        self.ended == self.team.0.len() || self.running == 0 && (cancelled || self.work.is_taken())
     }
 }
 
@@ -138,16 +139,8 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
     /// Workers whose speeds may be known from earlier work.
     pub fn new(work: W, speeds: impl Iterator<Item = Option<f64>>, observer: &'a dyn Observer) -> Crew<'a, W, E> {
         let team = Team(speeds.map(|before| Known { before, ..Known::default() }).collect());
-        let state = State {
-            work,
-            team,
-            running: 0,
-            error: None,
-            of_device: None,
-            has_panicked: false,
-            texts: HashSet::new(),
-            told: 0.0,
-        };
+        let state =
+            State { work, team, running: 0, error: None, of_device: None, ended: 0, texts: HashSet::new(), told: 0.0 };
         let (changed, stopped) = (Condvar::new(), AtomicBool::new(false));
         Crew { start: Instant::now(), state: Mutex::new(state), changed, stopped, observer }
     }
@@ -161,11 +154,8 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
         meanwhile: impl FnOnce() -> R,
     ) -> (Vec<U>, R) {
         let work = |number, own| {
-            let _stop = StopOnPanic(self);
-            let done = each(number, workers[number], own);
-            // All may be done: nobody waits for those that do not work yet.
-            workers.iter().for_each(|worker| worker.nudge());
-            done
+            let _ending = Ending { crew: self, workers };
+            each(number, workers[number], own)
         };
         thread::scope(|scope| {
             let work = &work;
@@ -211,7 +201,7 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
             self.observer.note(&format!("{error}; other devices render its part"));
         }
         let is_awake = awake.unwrap_or(false);
-        if !is_awake {
+        if !is_awake && !self.cancelled() {
             self.lose(&mut locked(&self.state), number);
         }
         is_awake
@@ -318,13 +308,30 @@ impl<'a, W: Work, E: Failure> Crew<'a, W, E> {
     }
 }
 
-/// Lets others end if a worker panics: they would wait for its part.
+/// The end of a worker, by whatever cause.
+struct Ending<'a, 'b, W: Work, E: Failure> {
+    crew: &'a Crew<'b, W, E>,
+    workers: &'a [&'a dyn Worker],
+}
+
+impl<W: Work, E: Failure> Drop for Ending<'_, '_, W, E> {
+    fn drop(&mut self) {
+        let Ending { crew, workers } = self;
+        // Others would wait for the part of one that panics.
+        crew.stopped.fetch_or(thread::panicking(), Ordering::Relaxed);
+        locked(&crew.state).ended += 1;
+        crew.changed.notify_all();
+        // All may be done: nobody waits for those that do not work yet.
+        workers.iter().for_each(|worker| worker.nudge());
+    }
+}
+
+/// Lets workers end if something else panics.
 struct StopOnPanic<'a, 'b, W: Work, E: Failure>(&'a Crew<'b, W, E>);
 
 impl<W: Work, E: Failure> Drop for StopOnPanic<'_, '_, W, E> {
     fn drop(&mut self) {
         if thread::panicking() {
-            locked(&self.0.state).has_panicked = true;
             self.0.stop();
         }
     }

@@ -1,7 +1,9 @@
 //! One image on several devices, for which renderers on the CPU stand.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, mpsc};
+use std::thread::{self, ThreadId};
+use std::time::Duration;
 
 use lightmesh_render::{
     AmbientSource, Crop, Device, Frame, Lookup, MeshCache, Mode, Observer, PreparedScene, Progress, Quality,
@@ -200,4 +202,33 @@ fn progress_is_that_of_the_whole_and_a_stop_leaves_rows_from_the_top() {
         depth[..pixels] == one.layers().unwrap().depth[..pixels]
             && depth[pixels..].iter().all(|depth| depth.is_infinite())
     );
+}
+
+#[test]
+fn nobody_waits_for_devices_that_have_ended() {
+    /// Ends devices between two bands, and says nothing of it to others.
+    struct Sly {
+        caller: ThreadId,
+        told: AtomicU32,
+    }
+    impl Observer for Sly {
+        fn progress(&self, progress: Progress) {
+            self.told.fetch_add(u32::from(progress.done > 0.0), Ordering::Relaxed);
+        }
+
+        fn cancelled(&self) -> bool {
+            let is_device = thread::current().id() != self.caller && rayon::current_thread_index().is_none();
+            is_device && self.told.load(Ordering::Relaxed) > 0
+        }
+    }
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || {
+        let [a, b] = [renderer(), renderer()];
+        let prepared = a.prepare(&Scene::open("builtin:childpark").unwrap(), &settings(), &Unobserved).unwrap();
+        let sly = Sly { caller: thread::current().id(), told: AtomicU32::new(0) };
+        let work = (&mut MeshCache::new(), &prepared, &settings());
+        sender.send(render_together(&[&a, &b], &Speeds::default(), work, &sly).map(drop))
+    });
+    let ended = receiver.recv_timeout(Duration::from_secs(60)).expect("it ends");
+    assert!(matches!(ended, Err(RenderError::Cancelled)), "{ended:?}");
 }
