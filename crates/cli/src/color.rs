@@ -11,12 +11,13 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use clap::ValueEnum;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Style};
+use serde::{Deserialize, Serialize};
 
 /// The flag.
 const FLAG: &str = "--color";
 
 /// When messages have colours.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[repr(u8)]
 pub(crate) enum When {
     /// On a terminal, unless NO_COLOR, CLICOLOR or CLICOLOR_FORCE decides
@@ -51,14 +52,18 @@ pub(crate) fn asked(arguments: impl IntoIterator<Item = OsString>) -> When {
     when
 }
 
-/// Whether a stream gets colours.
-pub(crate) fn on(stream: &impl IsTerminal) -> bool {
-    let when = match WHEN.load(Ordering::Relaxed) {
+/// What was [set].
+pub(crate) fn when() -> When {
+    match WHEN.load(Ordering::Relaxed) {
         when if when == When::Always as u8 => When::Always,
         when if when == When::Never as u8 => When::Never,
         _ => When::Auto,
-    };
-    decided(when, |name| std::env::var_os(name), stream.is_terminal())
+    }
+}
+
+/// Whether a stream gets colours.
+pub(crate) fn on(stream: &impl IsTerminal) -> bool {
+    decided(when(), |name| std::env::var_os(name), stream.is_terminal())
 }
 
 fn decided(when: When, variable: impl Fn(&str) -> Option<OsString>, is_terminal: bool) -> bool {

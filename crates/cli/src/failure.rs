@@ -9,6 +9,9 @@ use lightmesh::{LoadError, RenderError, SaveError, image};
 #[cfg(feature = "bench")]
 use lightmesh_bench::{BenchError, report::ReportError};
 
+use crate::run::farm::error::FarmError;
+use crate::server::ServerError;
+
 /// A comparison exceeded its threshold.
 pub(crate) const EXCEEDED: u8 = 1;
 /// Bad input or usage.
@@ -63,6 +66,12 @@ pub(crate) enum Failure {
         /// All names.
         known: Vec<String>,
     },
+    /// A server cannot be had, or does not do what it is asked for.
+    #[error(transparent)]
+    Server(#[from] ServerError),
+    /// A film that cannot be shared out.
+    #[error(transparent)]
+    Farm(#[from] FarmError),
     /// The threads that wait for signals and for the end of memory cannot be started.
     #[error("cannot listen for signals ({0}); end other programs or raise the limits of this one")]
     Signals(#[from] std::io::Error),
@@ -111,7 +120,8 @@ impl Failure {
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Exceeded(_) => EXCEEDED,
-            Failure::Signals(_) | Failure::Grid(GridError::Memory { .. }) => UNABLE,
+            Failure::Server(error) if error.is_of_usage() => BAD_INPUT,
+            Failure::Signals(_) | Failure::Server(_) | Failure::Grid(GridError::Memory { .. }) => UNABLE,
             Failure::Request(error) => exit_code_of(error),
             _ => BAD_INPUT,
         }

@@ -6,16 +6,20 @@
 //! 2. The process [leaves](leave): temporary files are removed, from then on none can be created or renamed, so that each output is
 //!    there completely or not at all; the message says which are there.
 //!
+//! A client of a [server](crate::server) waits until the server has ended the work, and a server takes a client that goes for a request, of which the
+//! server itself does not end.
+//!
 //! So nothing has to cooperate, be it reading, decoding, building or encoding. Libraries know nothing of signals. GPU memory is freed
 //! by the driver.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use lightmesh_files::{Aborted, abort, record_written};
+use lightmesh_files::{Aborted, abort, record_written, take_written};
 
 use crate::failure::Failure;
 use crate::output;
@@ -32,6 +36,8 @@ static REQUESTED: AtomicU8 = AtomicU8::new(0);
 static MANNER: AtomicU8 = AtomicU8::new(Manner::AtOnce as u8);
 /// What the last message says about the outputs that are there.
 static REMARK: Mutex<String> = Mutex::new(String::new());
+/// A file that ends with the process.
+static REMOVED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
 /// How work ends when the program shall end; later ones take longer.
 #[derive(Clone, Copy)]
@@ -43,6 +49,8 @@ enum Manner {
     Watched,
     /// It has the time it needs, unless there is a second request.
     Keeping,
+    /// Another process ends it, unless there is a second request, and says what is written.
+    Elsewhere,
 }
 
 /// Obeys requests from now on.
@@ -53,6 +61,10 @@ pub(crate) fn install() -> Result<(), Failure> {
         let first = REQUESTED.compare_exchange(0, code, Ordering::SeqCst, Ordering::SeqCst);
         match MANNER.load(Ordering::SeqCst) {
             manner if manner == Manner::Keeping as u8 && first.is_ok() => return,
+            manner if manner == Manner::Elsewhere as u8 => match first {
+                Ok(_) => return,
+                Err(code) => abandon(code),
+            },
             manner if manner == Manner::Watched as u8 => thread::sleep(GRACE),
             _ => {}
         }
@@ -69,6 +81,12 @@ pub(crate) fn watched<T>(work: impl FnOnce() -> T) -> T {
 /// written. Only a second request ends it at once.
 pub(crate) fn keeping<T>(work: impl FnOnce() -> T) -> T {
     in_manner(Manner::Keeping, work)
+}
+
+/// Waits for work of another process, which is told to end when this one [shall end](requested), and says what is written.
+#[cfg(unix)]
+pub(crate) fn elsewhere<T>(wait: impl FnOnce() -> T) -> T {
+    in_manner(Manner::Elsewhere, wait)
 }
 
 /// Work within work that keeps what it has does so, too.
@@ -89,6 +107,38 @@ pub(crate) fn requested() -> bool {
     REQUESTED.load(Ordering::Relaxed) != 0
 }
 
+/// The exit code, if the program shall end.
+#[cfg(unix)]
+pub(crate) fn code() -> Option<u8> {
+    Some(REQUESTED.load(Ordering::SeqCst)).filter(|&code| code != 0)
+}
+
+/// Asks the work in progress to end, as a signal would, but not the process.
+#[cfg(unix)]
+pub(crate) fn request(code: u8) {
+    REQUESTED.store(code, Ordering::SeqCst);
+}
+
+/// Nothing is asked for, written or to be said: other work begins.
+#[cfg(unix)]
+pub(crate) fn clear() {
+    REQUESTED.store(0, Ordering::SeqCst);
+    remark(String::new());
+    take_written();
+}
+
+/// The message of work that has ended by itself when it [should](request).
+#[cfg(unix)]
+pub(crate) fn ended() -> String {
+    told(&take_written())
+}
+
+/// The file that is removed when the process ends, however it is asked to.
+#[cfg(unix)]
+pub(crate) fn remove_at_end(path: Option<PathBuf>) {
+    *REMOVED.lock().unwrap_or_else(PoisonError::into_inner) = path;
+}
+
 /// Leaves if the program shall end: called when it has ended by itself.
 pub(crate) fn leave_if_requested() {
     match REQUESTED.load(Ordering::SeqCst) {
@@ -100,15 +150,38 @@ pub(crate) fn leave_if_requested() {
 /// Removes what is unfinished, says what is written, and exits. Of two threads that call this, one waits for the other to exit.
 fn leave(code: u8) -> ! {
     let aborted = abort();
-    // If it is being written, there is no picture.
-    let remark = REMARK.try_lock().map(|remark| remark.clone()).unwrap_or_default();
-    output::conclude(&if aborted.written.is_empty() || remark.is_empty() {
-        message(&aborted)
-    } else {
-        format!("{}; {remark}", message(&aborted))
-    });
+    remove();
+    output::conclude(&told(&aborted));
     exit(code)
 }
+
+/// Leaves without the answer of a process that works for this one.
+fn abandon(code: u8) -> ! {
+    output::conclude("interrupted: the server goes on until it can end the work");
+    exit(code)
+}
+
+/// Removes the file that ends with the process.
+fn remove() {
+    if let Some(path) = REMOVED.try_lock().ok().and_then(|path| path.clone()) {
+        // At worst, the next one removes it.
+        let _ = fs::remove_file(path);
+    }
+}
+
+/// What is written, and what can be said of it.
+fn told(aborted: &Aborted) -> String {
+    // If it is being written, there is no picture.
+    let remark = REMARK.try_lock().map(|remark| remark.clone()).unwrap_or_default();
+    match aborted.written.is_empty() || remark.is_empty() {
+        true => message(aborted),
+        false => format!("{}; {remark}", message(aborted)),
+    }
+}
+
+/// What to do instead of exiting when memory has run out.
+#[cfg(unix)]
+pub(crate) static AGAIN: Mutex<Option<Box<dyn FnOnce() + Send>>> = Mutex::new(None);
 
 /// The same for another reason, which is the message, unless it is known that outputs are there.
 pub(crate) fn end(code: u8, reason: &str) -> ! {
@@ -116,6 +189,11 @@ pub(crate) fn end(code: u8, reason: &str) -> ! {
         aborted if aborted == Aborted::default() => output::conclude(reason),
         aborted => output::conclude(&format!("{reason}; {}", message(&aborted))),
     }
+    #[cfg(unix)]
+    if let Some(begin) = AGAIN.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        begin();
+    }
+    remove();
     exit(code)
 }
 

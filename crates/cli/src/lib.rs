@@ -1,33 +1,35 @@
 //! `lightmesh`: the light mesh method on the command line.
 //!
-//! `args` (as typed) ▶ `run` (the work) ▶ exit code, in one direction. What a picture of a file is, and the work on it, is in the library:
+//! `args` (as typed) ▶ `run` (the work, here or on a `server`) ▶ exit code, in one direction. What a picture of a file is, and the work on it, is in the library:
 //! [`lightmesh::request`]. Anything that goes wrong is a `Failure`, which knows its exit code. Results go to standard output; notes, progress and
 //! errors go to standard error.
 //!
 //! It is a library so that other programs can contain the command line ([`run_command`]).
 
 mod args;
-#[cfg(feature = "bench")]
 mod budget;
 mod color;
 mod failure;
 mod flags;
 mod interrupt;
+mod job;
 mod memory;
 mod output;
 mod progress;
+mod report;
 mod run;
+mod server;
 
 use std::ffi::OsString;
-use std::panic::{self, PanicHookInfo};
-use std::sync::Once;
+use std::panic;
 
 use clap::FromArgMatches;
 use clap::builder::Styles;
 use lightmesh::request::Order;
 
 use crate::args::{Cli, Command};
-use crate::failure::{Failure, INTERRUPTED, UNABLE};
+use crate::failure::{Failure, UNABLE};
+use crate::report::{failed, forget_fault, report_fault};
 
 /// Runs the program with these arguments, the first of which is its name; returns the exit code. It takes over the process: signals, the hook for
 /// panics, the limit of memory.
@@ -36,6 +38,7 @@ pub fn run_command(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> 
     lightmesh_files::look_at_output();
     panic::set_hook(Box::new(report_fault));
     color::set(color::asked(arguments.iter().cloned()));
+    forget_fault();
     let result = panic::catch_unwind(|| match parse(&arguments, Styles::plain()) {
         Ok(cli) => start(&cli.command)
             .and_then(|()| run::run(cli.command))
@@ -75,34 +78,4 @@ fn explain(arguments: &[OsString], message: &clap::Error) -> u8 {
 fn start(command: &Command) -> Result<(), Failure> {
     interrupt::install()?;
     Ok(memory::watch(command.memory_limit())?)
-}
-
-/// Reports an error; returns the exit code.
-fn failed(failure: &Failure, arguments: &[OsString]) -> u8 {
-    match failure {
-        Failure::Exceeded(_) => output::complain(&failure.to_string()),
-        // The last message, on what is written, says it.
-        _ if failure.exit_code() == INTERRUPTED => {}
-        _ => match flags::that_mend(failure) {
-            flags if flags.is_empty() => output::complain(&format!("error: {failure}")),
-            flags => {
-                // A flag with a value is what to write instead.
-                let variable = |flag: &str| args::variable_of(flag, arguments).filter(|_| !flag.contains(' '));
-                let flags: Vec<String> = flags.into_iter().map(|flag| variable(&flag).unwrap_or(flag)).collect();
-                output::complain(&format!("error: {failure} ({})", flags.join(", ")));
-            }
-        },
-    }
-    failure.exit_code()
-}
-
-/// Reports a bug in the program itself, once, however many threads run into it.
-fn report_fault(fault: &PanicHookInfo) {
-    static ONCE: Once = Once::new();
-    let payload = fault.payload();
-    let text = payload.downcast_ref::<&str>().copied().or(payload.downcast_ref::<String>().map(String::as_str));
-    let message = text.unwrap_or("no message");
-    let place = fault.location().map_or_else(String::new, |place| format!(", {}:{}", place.file(), place.line()));
-    let text = format!("error: internal error in lightmesh ({message}){place}; please report it with the command line");
-    ONCE.call_once(|| output::complain(&text));
 }

@@ -20,6 +20,8 @@ static ALLOCATOR: Counting = Counting;
 
 /// What the program holds apart from what it allocates, beyond that at its start: stacks, and code that is not loaded yet.
 const OUTSIDE: u64 = 16 << 20;
+/// What was held apart at the start.
+static BEFORE: OnceLock<u64> = OnceLock::new();
 /// One part in this many of a limit is for gaps between allocated blocks.
 const GAPS: u64 = 16;
 /// How long the message may take if the thread that wants memory holds what it waits for.
@@ -34,10 +36,9 @@ static TASK: Mutex<String> = Mutex::new(String::new());
 /// Whether the command has a flag for the limit.
 static HAS_FLAG: AtomicBool = AtomicBool::new(false);
 
-/// From now on the program holds at most what its flag says, if the command has one; without one, what is free, less a reserve.
+/// From now on the program ends if it needs more memory than its [limit], which is that of the command's flag, if it has one.
 pub(crate) fn watch(flag: Option<Option<ByteSize>>) -> io::Result<()> {
-    HAS_FLAG.store(flag.is_some(), Ordering::Relaxed);
-    let limit = flag.flatten().map(|limit| limit.0);
+    BEFORE.get_or_init(|| resident().unwrap_or(0).saturating_sub(held()));
     let ending = thread::Builder::new().name("memory".to_owned()).spawn(|| {
         loop {
             if let Some(refused) = REFUSED.get() {
@@ -48,15 +49,21 @@ pub(crate) fn watch(flag: Option<Option<ByteSize>>) -> io::Result<()> {
     })?;
     // If there is one already, it serves.
     let _ = ENDING.set(ending.thread().clone());
-    let ceiling = match limit {
-        Some(limit) => {
-            let outside = resident().unwrap_or(0).saturating_sub(held()) + OUTSIDE;
+    limit(flag);
+    Ok(())
+}
+
+/// From now on the program holds at most what a command's flag says, if it has one; without a limit, what is free, less a reserve.
+pub(crate) fn limit(flag: Option<Option<ByteSize>>) {
+    HAS_FLAG.store(flag.is_some(), Ordering::Relaxed);
+    let ceiling = match flag.flatten() {
+        Some(ByteSize(limit)) => {
+            let outside = BEFORE.get().copied().unwrap_or(0) + OUTSIDE;
             limit.saturating_sub(limit / GAPS + outside)
         }
         None => Budget::default().left().map_or(u64::MAX - 1, |left| held().saturating_add(left)),
     };
     set_ceiling(ceiling, end);
-    Ok(())
 }
 
 /// Does `work`, which messages call `task`: "reading a.obj".

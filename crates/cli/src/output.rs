@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use std::path::{Path, PathBuf};
 
-use lightmesh::request::files::json;
+pub(crate) use lightmesh::request::files::json;
 pub(crate) use lightmesh::request::files::{OutputError, Outputs, publish, ready};
 use lightmesh_files::{check_output, visible, visible_json, visible_lines};
 use serde::Serialize;

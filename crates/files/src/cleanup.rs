@@ -4,6 +4,7 @@
 //! and nothing unfinished stays.
 
 use std::fs;
+use std::mem;
 use std::path::PathBuf;
 
 use crate::output::{Ready, Step};
@@ -25,6 +26,12 @@ pub fn record_written() {
     registry().written.get_or_insert_default();
 }
 
+/// What was written since [`record_written`], or since this was called before: for programs that do one piece of work after the other.
+pub fn take_written() -> Aborted {
+    let mut registry = registry();
+    Aborted { written: registry.written.as_mut().map(mem::take).unwrap_or_default(), partial: registry.partial.take() }
+}
+
 /// An output that [`abort`] publishes, such as results so far; it replaces an earlier one, and [`publish`](crate::publish())
 /// replaces it. Only a file can stand by: what is written through would have to wait for a reader.
 pub fn publish_on_abort(output: Option<Ready>) {
@@ -43,13 +50,13 @@ pub fn abort() -> Aborted {
             registry.wrote(path);
         }
         // Dropping it would take the registry.
-        std::mem::forget(file);
+        mem::forget(file);
     }
     for path in &registry.temporaries {
         // If it cannot be removed, the next run will.
         let _ = fs::remove_file(path);
     }
     let (written, partial) = (registry.written.take().unwrap_or_default(), registry.partial.take());
-    std::mem::forget(registry);
+    mem::forget(registry);
     Aborted { written, partial }
 }

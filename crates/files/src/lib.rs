@@ -40,7 +40,7 @@ mod visible;
 mod tests;
 
 pub use check::{check_folder, check_writable};
-pub use cleanup::{Aborted, abort, publish_on_abort, record_written};
+pub use cleanup::{Aborted, abort, publish_on_abort, record_written, take_written};
 pub use output::{Output, Ready, WriteError};
 pub use per_process::PerProcess;
 pub use publish::{PublishError, publish, publish_record};

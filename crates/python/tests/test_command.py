@@ -21,7 +21,7 @@ GAZEBO = ("render", "builtin:gazebo", "--device", "cpu", "--size", "96x64", "--s
 SETTINGS = (ImageSettings, SaveSettings, OpenSettings, FilmSettings)
 #: Flags about files, several images, the device or the program itself.
 NOT_OF_A_FRAME = set(
-    "color device help mesh_file output progress quiet stats sun_hours threads verbose".split()
+    "color device help mesh_file output progress quiet server stats sun_hours threads verbose".split()
 )
 
 

@@ -162,7 +162,7 @@ items! {
     Exposure: Shape::Number(&["auto"]), Number;
     Smooth: Shape::Number(&["off"]), Number;
     FrameRate: Shape::Number(&[]), Never;
-    Frames: Shape::Text, Never;
+    Frames: Shape::Text, Text;
     Size: Shape::Wholes(2), Never, "x";
     Dims: Shape::Wholes(3), Never, "x";
     Crop: Shape::Wholes(4), Text;

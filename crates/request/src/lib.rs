@@ -8,6 +8,7 @@
 //! * A [`Plan`] is a request that is checked as far as possible without the scene; [`Order`] names the scene and the files to write.
 //! * A [`Session`] has the scene staged, which means that it has the camera, the lights and the ground that it lacked, and prepared. It renders
 //!   pictures, [films](mod@film) and [sun studies](sun).
+//! * A program that serves many orders keeps what is [`Warm`].
 //! * [Many processes](cluster) render one film or picture together.
 //! * A [`Host`] is the program around: it shows notes and progress, and can end the work.
 //! * Errors name settings; each face [turns](Told) the names into its own [`Words`].
@@ -35,10 +36,12 @@ mod save;
 mod session;
 mod settings;
 mod stage;
+mod staged;
 pub mod sun;
 pub mod table;
 mod told;
 pub mod value;
+mod warm;
 mod words;
 
 pub use error::{ClusterError, Error, ManifestError, MovieChoiceError, MovieError, RequestError, StageError};
@@ -52,4 +55,5 @@ pub use request::{FIELDS, Field, Request};
 pub use save::describe;
 pub use session::{Frames, Session, fewer_threads};
 pub use told::Told;
+pub use warm::{Warm, WarmDevices};
 pub use words::{Name, Words};

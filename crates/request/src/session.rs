@@ -15,6 +15,7 @@ use crate::host::{BUILDING, Host, Parts};
 use crate::mesh_file::Mesh;
 use crate::plan::Plan;
 use crate::save::save;
+use crate::staged::Staged;
 use crate::sun::{self, SunHours};
 use crate::words::Words;
 
@@ -63,7 +64,13 @@ impl Session {
     ///
     /// # Errors
     /// [`Error`].
-    pub fn begin(
+    pub fn begin(renderer: &Renderer, plan: Plan, scene: Scene, load: f64, host: &dyn Host) -> Result<Session, Error> {
+        Session::begin_with(None, renderer, plan, scene, load, host)
+    }
+
+    /// The same with what an earlier session has `kept` of the scene, if it may be kept, and for the next one.
+    pub(crate) fn begin_with(
+        mut kept: Option<&mut Option<Staged>>,
         renderer: &Renderer,
         plan: Plan,
         mut scene: Scene,
@@ -79,7 +86,15 @@ impl Session {
             host.warning(&text);
         }
         let metering = staged(&plan, &mut scene, host)?;
+        // What is of no use makes room.
+        let known = kept.as_mut().and_then(|kept| kept.take().filter(|kept| kept.is_for(&plan.order.request)));
+        if let Some(known) = &known {
+            scene.geometry = Arc::clone(&known.geometry);
+        }
         let prepared = host.during(BUILDING, || renderer.prepare(&scene, &plan.settings, host))?;
+        if let Some(kept) = kept {
+            *kept = Some(Staged::new(&plan.order.request, &scene.geometry, &prepared));
+        }
         film::explain(&scene, plan.film.is_some(), host);
         Ok(Session { prepared: Prepared { plan: Arc::new(plan), scene: prepared, metering }, load })
     }

@@ -4,7 +4,9 @@
 
 #[cfg(feature = "bench")]
 mod bench;
+mod farm;
 mod render;
+mod serve;
 mod settings;
 mod variables;
 mod words;
@@ -18,10 +20,12 @@ use lightmesh::scene::Instancing;
 
 #[cfg(feature = "bench")]
 pub(crate) use bench::{BenchArgs, BenchCommand, BenchCompareArgs, SuiteArgs};
+pub(crate) use farm::FarmArgs;
 pub(crate) use render::RenderArgs;
+pub(crate) use serve::ServeArgs;
 pub(crate) use settings::{Flags, Reading};
 pub(crate) use variables::{naming_variables, variable_of};
-pub(crate) use words::Progress;
+pub(crate) use words::{Chunks, Progress};
 
 use crate::color::When;
 
@@ -73,7 +77,7 @@ Exit codes:
   0    success
   1    a comparison exceeded its threshold
   2    bad input or usage
-  3    device unusable or memory insufficient
+  3    device unusable, memory insufficient, or a server (--server) that cannot be had
   4    a film failed after some of its frames; --resume continues it
   130  interrupted (143 by SIGTERM, 129 by SIGHUP)
 
@@ -102,6 +106,10 @@ pub(crate) enum Command {
     Render(Box<RenderArgs>),
     /// Describe a scene, or list devices
     Info(InfoArgs),
+    /// Render for others, with a scene that stays read and devices that stay awake
+    Serve(ServeArgs),
+    /// Write a job for a render farm, as an Open Job Description template
+    Farm(Box<FarmArgs>),
     /// Compare two images
     Compare(CompareArgs),
     /// Build the acceleration grid of a scene and save it
@@ -139,6 +147,7 @@ impl Command {
     pub(crate) fn memory_limit(&self) -> Option<Option<ByteSize>> {
         let reading = match self {
             Command::Render(args) => &args.scene.reading,
+            Command::Farm(args) => &args.scene.reading,
             Command::Info(args) => &args.reading,
             Command::Grid(args) => &args.scene.reading,
             Command::Export(args) => &args.scene.reading,

@@ -45,6 +45,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "F.json", requires = "output", help_heading = "Reports")]
     pub(crate) stats: Option<PathBuf>,
 
+    /// Have the server at this socket render, which `lightmesh serve` has started: devices are awake there, and the scene
+    /// that was rendered last is ready [default: off]
+    #[arg(long, value_name = "PATH", help_heading = "Machine")]
+    pub(crate) server: Option<PathBuf>,
+
     /// Show progress on stderr
     #[arg(long, value_enum, default_value_t = Progress::Auto, help_heading = "Reports")]
     pub(crate) progress: Progress,

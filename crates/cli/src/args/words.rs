@@ -1,9 +1,19 @@
 //! Flag values that are chosen from a list of the program's own.
 
 use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+/// Which frames a task of a job may render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Chunks {
+    /// Frames without gaps between them
+    Contiguous,
+    /// Any frames
+    Noncontiguous,
+}
 
 /// How progress is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 pub(crate) enum Progress {
     /// A bar on a terminal, elsewhere a line every ten seconds; nothing with --quiet
     Auto,
@@ -11,6 +21,8 @@ pub(crate) enum Progress {
     Bar,
     /// One JSON object per line
     Json,
+    /// Lines for runners of Open Job Description: the part that is done, and which frame was finished last
+    Openjd,
     /// Nothing
     None,
 }

@@ -1,8 +1,9 @@
-//! Output on standard error during a computation: messages, a bar, a line now and then, or JSON.
+//! Output on standard error during a computation: messages, a bar, a line now and then, JSON, or lines for the runners of jobs.
 
 mod bar;
 mod json;
 mod lines;
+mod openjd;
 
 use std::collections::BTreeSet;
 use std::io::{self, IsTerminal};
@@ -14,10 +15,12 @@ use lightmesh::request::{FrameDone, Host, Words};
 use lightmesh::{Observer, Stage};
 
 use crate::args::Progress;
+use crate::failure::Failure;
 use crate::{flags, interrupt, memory, output};
 use bar::Bar;
 use json::Json;
 use lines::Lines;
+use openjd::Openjd;
 
 /// Observes a render and reports on it.
 pub(crate) struct Watcher {
@@ -32,6 +35,7 @@ enum Sink {
     Bar(Bar),
     Lines(Lines),
     Json(Json),
+    Openjd(Openjd),
 }
 
 impl Watcher {
@@ -40,6 +44,7 @@ impl Watcher {
         let terminal = io::stderr().is_terminal();
         let sink = match progress {
             Progress::Json => Sink::Json(Json::new()),
+            Progress::Openjd => Sink::Openjd(Openjd::new()),
             Progress::None => Sink::Plain,
             Progress::Auto if quiet => Sink::Plain,
             Progress::Auto | Progress::Bar if terminal => Sink::Bar(Bar::new()),
@@ -66,12 +71,19 @@ impl Watcher {
         self.say("summary", text, text);
     }
 
+    /// The work has failed, which the error says.
+    pub(crate) fn failed(&self, error: &Failure) {
+        if let Sink::Openjd(openjd) = &self.sink {
+            openjd.fail(&error.to_string());
+        }
+    }
+
     fn say(&self, event: &'static str, line: &str, text: &str) {
         if self.quiet {
             return;
         }
         match &self.sink {
-            Sink::Plain | Sink::Lines(_) => output::complain(line),
+            Sink::Plain | Sink::Lines(_) | Sink::Openjd(_) => output::complain(line),
             Sink::Bar(bar) => bar.aside(line),
             Sink::Json(json) => json.text(event, text),
         }
@@ -90,7 +102,7 @@ fn time_left(left: Duration) -> String {
 impl Observer for Watcher {
     fn begin(&self, stage: Stage, total: u64) {
         match &self.sink {
-            Sink::Plain => {}
+            Sink::Plain | Sink::Openjd(_) => {}
             Sink::Bar(bar) => bar.begin(stage),
             Sink::Lines(lines) => lines.begin(stage),
             Sink::Json(json) => json.begin(stage, total),
@@ -99,7 +111,7 @@ impl Observer for Watcher {
 
     fn advance(&self, pieces: u64) {
         match &self.sink {
-            Sink::Plain | Sink::Bar(_) | Sink::Lines(_) => {}
+            Sink::Plain | Sink::Bar(_) | Sink::Lines(_) | Sink::Openjd(_) => {}
             Sink::Json(json) => json.advance(pieces),
         }
     }
@@ -110,12 +122,13 @@ impl Observer for Watcher {
             Sink::Bar(bar) => bar.whole(progress),
             Sink::Lines(lines) => lines.whole(progress),
             Sink::Json(json) => json.whole(progress),
+            Sink::Openjd(openjd) => openjd.whole(progress),
         }
     }
 
     fn end(&self, stage: Stage) {
         match &self.sink {
-            Sink::Plain | Sink::Bar(_) => {}
+            Sink::Plain | Sink::Bar(_) | Sink::Openjd(_) => {}
             Sink::Lines(lines) => lines.end(),
             Sink::Json(json) => json.end(stage),
         }
@@ -154,6 +167,9 @@ impl Host for Watcher {
     fn frame(&self, frame: &FrameDone) {
         let FrameDone { number, last, when, seconds, left, picture, .. } = frame;
         let when = if when.is_empty() { String::new() } else { format!(", {when}") };
+        if let Sink::Openjd(openjd) = &self.sink {
+            openjd.frame(frame);
+        }
         match &self.sink {
             Sink::Json(json) if !self.quiet => json.frame(frame),
             _ => self.say(

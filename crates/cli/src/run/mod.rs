@@ -7,6 +7,7 @@ mod bench_compare;
 mod compare;
 mod completions;
 mod export;
+pub(crate) mod farm;
 mod grid;
 mod info;
 mod man;
@@ -14,6 +15,7 @@ mod open;
 mod render;
 #[cfg(feature = "bench")]
 mod report;
+mod serve;
 
 use lightmesh::Scene;
 
@@ -24,7 +26,9 @@ use crate::output;
 /// Runs the subcommand; returns the exit code.
 pub(crate) fn run(command: Command) -> Result<u8, Failure> {
     match command {
-        Command::Render(args) => render::run(&args),
+        Command::Render(args) => return render::run(&args),
+        Command::Serve(args) => serve::run(&args),
+        Command::Farm(args) => farm::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Grid(args) => grid::run(&args),

@@ -25,18 +25,19 @@ pub(super) fn open_stored(
     watcher: &Watcher,
 ) -> Result<Scene, Failure> {
     let request = arg.reading.request();
-    open((&arg.scene, request.scene_format), &load_options(&request, smooth, instancing), outputs, watcher)
+    let options = load_options(&request, smooth, instancing);
+    opened(&arg.scene, || read((&arg.scene, request.scene_format), &options), outputs, watcher)
 }
 
-/// Reads the scene, of which outputs must not overwrite any file, and prints its warnings.
-pub(super) fn open(
-    (path, format): (&Path, Option<SceneFormat>),
-    options: &LoadOptions,
+/// The scene of `path`, which is read by `read` and of which outputs must not overwrite any file; prints its warnings.
+pub(super) fn opened(
+    path: &Path,
+    read: impl FnOnce() -> Result<Scene, Failure>,
     outputs: &Outputs,
     watcher: &Watcher,
 ) -> Result<Scene, Failure> {
     outputs.keep("the scene", input(path))?;
-    let scene = read((path, format), options)?;
+    let scene = read()?;
     outputs.keep_scene(&scene)?;
     scene.warnings.iter().for_each(|warning| watcher.warning(warning));
     Ok(scene)

@@ -2,24 +2,45 @@
 
 use std::time::Instant;
 
-use lightmesh::render::{Choice, Stats, devices};
+use lightmesh::render::{Stats, devices};
 use lightmesh::request::film::FrameRange;
 use lightmesh::request::film::check_encoder;
-use lightmesh::request::{Error, Part, Plan, RequestError, Session};
+use lightmesh::request::{Error, Part, Plan, RequestError, Session, Warm, WarmDevices};
 use lightmesh::{Device, Frame, Observer, Renderer};
 use lightmesh_memory::Bytes;
 
-use super::open::open;
+use super::open::{opened, read};
 use crate::args::RenderArgs;
-use crate::failure::Failure;
-use crate::interrupt;
+use crate::failure::{Failure, INTERRUPTED};
+use crate::job::{Job, Told};
 use crate::progress::Watcher;
+use crate::{interrupt, server};
 
 /// The share of a day's film and hours that the hours take, more or less.
 const HOURS: f64 = 0.1;
 
-pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let order = args.order();
+/// Returns the exit code, which is that of the server if there is one.
+pub(super) fn run(args: &RenderArgs) -> Result<u8, Failure> {
+    let job = Job::of(args);
+    match &args.server {
+        Some(path) => server::render(path, &job),
+        None => render(&job, &mut Warm::default()).map(|()| 0),
+    }
+}
+
+/// Does a job with what is warm.
+pub(crate) fn render(job: &Job, warm: &mut Warm) -> Result<(), Failure> {
+    let watcher = Watcher::new(job.told.progress, job.told.quiet);
+    let done = work(job.clone(), warm, &watcher);
+    // A task that was cancelled has not failed.
+    done.inspect_err(|error| {
+        if error.exit_code() != INTERRUPTED {
+            watcher.failed(error);
+        }
+    })
+}
+
+fn work(Job { order, told }: Job, warm: &mut Warm, watcher: &Watcher) -> Result<(), Failure> {
     // The parser lets that pass for a day alone, of which there is more than one output.
     if order.files.output.is_none() && order.files.sun_hours.is_empty() {
         return Err(RequestError::NothingOfSun.into());
@@ -28,34 +49,33 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(container) = plan.files.movie {
         check_encoder(&plan.order, container).map_err(Error::from)?;
     }
-    let watcher = Watcher::new(args.progress, args.quiet);
     let device = plan.order.request.device;
-    let choice = Choice::of(device).inspect_err(|_| explain_devices(args, &watcher))?;
-    let using = using(&choice, args.verbose);
-    let renderer = Renderer::on(choice, plan.threads.map(usize::from))?;
+    let devices = warm.devices(&plan).inspect_err(|_| explain_devices(told, watcher))?;
+    let (using, renderer) = (using(&devices, told.verbose), &*devices.renderer);
     let start = Instant::now();
     let scene = (&*plan.order.scene, plan.order.request.scene_format);
-    let scene = open(scene, &plan.load_options(), &plan.files.outputs, &watcher)?;
+    let read = || read(scene, &plan.load_options());
+    let scene = opened(&plan.order.scene, || warm.scene(&plan, read), &plan.files.outputs, watcher)?;
     let range = plan.range(&scene)?;
     let load = start.elapsed().as_secs_f64();
     if matches!(device, Device::Auto | Device::Cuda(None) | Device::Several(_)) {
         watcher.note(&format!("device {device}: using {using}"));
     }
-    if let Some(crease) = plan.smooth.filter(|_| args.verbose) {
+    if let Some(crease) = plan.smooth.filter(|_| told.verbose) {
         let (made, degrees) = (scene.smooth_normals, crease.degrees());
         watcher.note(&format!("smooth {degrees}: made {made} normals (--smooth off shows facets)"));
     }
-    let session = Session::begin(&renderer, plan, scene, load, &watcher)?;
+    let session = warm.session(renderer, plan, scene, load, watcher)?;
     if let Some(range) = range {
-        return film(&session, range, &renderer, &watcher);
+        return film(&session, range, renderer, watcher);
     }
-    if let Some(done) = session.write_sun_hours(&renderer, &watcher)? {
+    if let Some(done) = session.write_sun_hours(renderer, watcher)? {
         watcher.summary(&done);
     }
     if session.plan().sun.is_some() {
         return Ok(());
     }
-    picture(session, args, &renderer, &watcher)
+    picture(session, told, renderer, watcher)
 }
 
 /// Renders the frames of a film, after the hours of direct sun if these are asked for, too.
@@ -72,7 +92,7 @@ fn film(session: &Session, range: FrameRange, renderer: &Renderer, watcher: &Wat
 }
 
 /// Renders the picture and writes its files.
-fn picture(session: Session, args: &RenderArgs, renderer: &Renderer, watcher: &Watcher) -> Result<(), Failure> {
+fn picture(session: Session, told: Told, renderer: &Renderer, watcher: &Watcher) -> Result<(), Failure> {
     let is_partial = session.plan().settings.partial;
     let picture = session.plan().files.picture_name();
     let write = || session.write_picture(renderer, watcher).map_err(Failure::from);
@@ -81,7 +101,7 @@ fn picture(session: Session, args: &RenderArgs, renderer: &Renderer, watcher: &W
         // The last message says what is written.
         return Ok(());
     }
-    if args.verbose {
+    if told.verbose {
         details(&frame.stats).iter().for_each(|line| watcher.note(line));
     }
     watcher.summary(&summary(&frame, &picture));
@@ -89,18 +109,18 @@ fn picture(session: Session, args: &RenderArgs, renderer: &Renderer, watcher: &W
 }
 
 /// The device that was chosen. That no CUDA device was, is only said where one could be expected, or to those who ask.
-fn using(choice: &Choice, verbose: bool) -> String {
-    let why = match &choice.no_cuda {
+fn using(devices: &WarmDevices, verbose: bool) -> String {
+    let why = match &devices.no_cuda {
         Some(why) if verbose => format!("; no CUDA device can be used: {why}"),
-        Some(_) if choice.misses_cuda => "; no CUDA device (-v says why)".to_owned(),
+        Some(_) if devices.misses_cuda => "; no CUDA device (-v says why)".to_owned(),
         _ => String::new(),
     };
-    format!("{}{why}", choice.reason)
+    format!("{}{why}", devices.reason)
 }
 
 /// All that is known of devices that cannot be used, for those who ask.
-fn explain_devices(args: &RenderArgs, watcher: &Watcher) {
-    if args.verbose {
+fn explain_devices(told: Told, watcher: &Watcher) {
+    if told.verbose {
         let unusable = devices().into_iter().filter(|report| !report.usable);
         unusable.for_each(|report| watcher.note(&format!("device {}: not usable: {}", report.device, report.remark)));
     }

@@ -261,7 +261,7 @@ fn films_that_cannot_be_written_are_refused_at_once() {
         (&["-o", "f.png"][..], "-o f.png is one file, but a film has one for each frame; write ####"),
         (&["-o", "f.#.png", "--stats", "f.json"], "--stats f.json is one file"),
         (&["-o", "f.#.png", "--frames", "2-4"], "--frames 2-4: the film ends with frame 3"),
-        (&["-o", "f.#.png", "--frames", "0-2"], "the film ends with frame 3"),
+        (&["-o", "f.#.png", "--frames", "0-2"], "--frames 0-2: films begin with frame 1"),
     ] {
         let message = place.refused(&[&film[..], flags].concat());
         assert!(message.contains(sentence), "{message}");

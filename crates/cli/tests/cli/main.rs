@@ -7,6 +7,7 @@ mod compare;
 mod devices;
 mod display;
 mod faces;
+mod farm;
 mod files;
 mod film;
 mod help;
@@ -28,5 +29,7 @@ mod interrupt;
 mod movie;
 #[cfg(unix)]
 mod outputs;
+#[cfg(unix)]
+mod serve;
 #[cfg(unix)]
 mod streams;

@@ -71,7 +71,7 @@ fn an_unknown_word_is_answered_with_the_known() {
         ("--up", "auto, y, z"),
         ("--falloff", "none, inverse-square"),
         ("--transfer", "srgb, linear"),
-        ("--progress", "auto, bar, json, none"),
+        ("--progress", "auto, bar, json, openjd, none"),
     ];
     for (flag, known) in cases {
         let done = place.run(&["render", "room.toml", "-o", "a.png", flag, "foo"]);

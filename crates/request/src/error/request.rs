@@ -188,6 +188,9 @@ impl Told for RequestError {
                 of(output),
                 path.display()
             ),
+            RequestError::NoFrame { frames, .. } if frames.first() < 1 => {
+                format!("{}: films begin with frame 1; choose frames from there on", words.with("frames", frames))
+            }
             RequestError::NoFrame { frames, last } => format!(
                 "{}: the film ends with frame {last}; choose frames up to it ({}, {}, {}, {})",
                 words.with("frames", frames),

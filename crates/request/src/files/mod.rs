@@ -34,6 +34,12 @@ impl Files {
     /// The names of the settings that name files.
     pub const NAMES: [Name; 5] = ["output", "layers", "stats", "sun_hours", "mesh_file"];
 
+    /// All of them.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        let single = [&self.output, &self.layers, &self.stats, &self.mesh_file].into_iter().flatten();
+        single.chain(&self.sun_hours).map(PathBuf::as_path)
+    }
+
     /// The image; an empty path if there is none.
     pub(crate) fn picture(&self) -> &Path {
         self.output.as_deref().unwrap_or(Path::new(""))

@@ -70,6 +70,13 @@ pub struct FrameRange {
     pub(crate) skipped: usize,
 }
 
+impl FrameRange {
+    /// The frames that are to be rendered; `None` if all exist.
+    pub fn frames(&self) -> Option<Frames> {
+        Frames::of_numbers(&self.numbers)
+    }
+}
+
 impl Film {
     /// The film that is asked for, if it is one. Fails if what is known of it without the scene cannot be rendered.
     pub(crate) fn new(order: &Order, sun: Option<&SunStudy>) -> Result<Option<Film>, RequestError> {
@@ -81,7 +88,9 @@ impl Film {
         let movie = Container::of_film(order)?;
         let record = if order.request.resume { manifest::known(order)? } else { None };
         let mut film = Film { motion, record, movie, frames: order.request.frames.clone(), left: None };
-        if let Some(last) = motion.known_last().or(order.request.frames.as_ref().map(Frames::last)) {
+        // A frame that no film has is found by `wanted`.
+        let last_wanted = || order.request.frames.as_ref().map(|frames| frames.last().try_into().unwrap_or(1));
+        if let Some(last) = motion.known_last().or_else(last_wanted) {
             film.left = Some(film.left(order, film.wanted(last)?, last)?);
         }
         Ok(Some(film))
@@ -104,7 +113,7 @@ impl Film {
     /// The frames that are wanted of a film with `last` of them.
     fn wanted(&self, last: u32) -> Result<Frames, RequestError> {
         let frames = self.frames.clone().unwrap_or_else(|| Frames::up_to(last));
-        if frames.last() > last || frames.first() == 0 {
+        if frames.last() > last.into() || frames.first() < 1 {
             Err(RequestError::NoFrame { frames, last })
         } else {
             Ok(frames)
@@ -115,7 +124,7 @@ impl Film {
         // Frames that the manifest does not name are those that were being finished when the film ended.
         let replaces = order.request.overwrite || self.record.is_some() || self.is_movie();
         let (mut numbers, mut existing) = (Vec::new(), VecDeque::new());
-        for number in frames.numbers() {
+        for number in frames.numbers().filter_map(|number| number.try_into().ok()) {
             let files = PictureFiles::of_frame(order, number)?;
             match files.picture_file().filter(|path| path.exists()) {
                 Some(path) if !replaces => existing.push_back(path.to_owned()),
@@ -158,6 +167,6 @@ impl Film {
 
     /// A frame that stands for all in what is checked before the scene is open.
     pub(crate) fn first(&self) -> u32 {
-        self.frames.as_ref().map_or(1, Frames::first)
+        self.frames.as_ref().and_then(|frames| frames.first().try_into().ok()).unwrap_or(1)
     }
 }

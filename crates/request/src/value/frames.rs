@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use super::ValueError;
 
-/// Frames: numbers, ranges, and every so many of a range, in one list. They are rendered in the order of their numbers, each once.
+/// Frames: numbers, ranges, and every so many of a range, in one list. They are rendered in the order of their numbers, each once. Numbers below 1 can
+/// be named, as schedulers do, but no film has such frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
     /// At least one.
@@ -16,40 +17,53 @@ pub struct Frames {
 /// Frames from a first to a last one, every so many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Part {
-    first: u32,
-    last: u32,
+    first: i64,
+    last: i64,
     step: u32,
 }
 
 impl Frames {
     /// All from 1 on.
     pub fn up_to(last: u32) -> Frames {
-        Frames { parts: vec![Part { first: 1, last, step: 1 }] }
+        Frames { parts: vec![Part { first: 1, last: last.into(), step: 1 }] }
+    }
+
+    /// These numbers, which rise; `None` if there are none.
+    pub fn of_numbers(numbers: &[u32]) -> Option<Frames> {
+        let mut parts: Vec<Part> = Vec::new();
+        for number in numbers.iter().map(|&number| i64::from(number)) {
+            match parts.last_mut() {
+                Some(part) if part.first == part.last => (part.last, part.step) = (number, (number - part.last) as u32),
+                Some(part) if part.last + i64::from(part.step) == number => part.last = number,
+                _ => parts.push(Part { first: number, last: number, step: 1 }),
+            }
+        }
+        (!parts.is_empty()).then_some(Frames { parts })
     }
 
     /// Their numbers, from the smallest on.
-    pub fn numbers(&self) -> impl Iterator<Item = u32> + Clone {
+    pub fn numbers(&self) -> impl Iterator<Item = i64> + Clone {
         let from = |number| self.parts.iter().filter_map(|part| part.from(number)).min();
-        std::iter::successors(from(0), move |number| from(number.checked_add(1)?))
+        std::iter::successors(from(self.first()), move |number| from(number + 1))
     }
 
     /// The smallest number.
-    pub fn first(&self) -> u32 {
+    pub fn first(&self) -> i64 {
         self.parts.iter().map(|part| part.first).min().unwrap_or_default()
     }
 
     /// The largest number that may occur.
-    pub fn last(&self) -> u32 {
+    pub fn last(&self) -> i64 {
         self.parts.iter().map(|part| part.last).max().unwrap_or_default()
     }
 }
 
 impl Part {
     /// Its smallest number that is not below `number`.
-    fn from(&self, number: u32) -> Option<u32> {
-        let steps = number.saturating_sub(self.first).div_ceil(self.step);
-        let next = steps.checked_mul(self.step).and_then(|ahead| ahead.checked_add(self.first));
-        next.filter(|&next| next <= self.last)
+    fn from(&self, number: i64) -> Option<i64> {
+        let (ahead, step) = ((number - self.first).max(0), i64::from(self.step));
+        let next = self.first + (ahead + step - 1) / step * step;
+        (next <= self.last).then_some(next)
     }
 }
 
@@ -79,17 +93,26 @@ impl FromStr for Frames {
     }
 }
 
-/// One part of a list: `A`, `A-B`, `A-BxN` or `A-B:N`.
+/// One part of a list: `A`, `A-B`, `A-BxN` or `A-B:N`; A and B may have a minus sign.
 fn part(text: &str) -> Option<Part> {
-    let text = text.trim();
-    let whole = |text: &str| {
-        let is_plain = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-        is_plain.then(|| text.parse().ok()).flatten()
+    let (range, step) = match text.trim().split_once(['x', ':']) {
+        Some((range, step)) => (range, whole(step)?),
+        None => (text.trim(), 1),
     };
-    let (range, step) = text.split_once(['x', ':']).map_or((text, Some(1)), |(range, step)| (range, whole(step)));
-    let (first, last) = range.split_once('-').unwrap_or((range, range));
-    let part = Part { first: whole(first)?, last: whole(last)?, step: step? };
+    // The first minus may be a sign.
+    let dash = range.get(1..)?.find('-').map(|dash| dash + 1);
+    let (first, last) = dash.map_or((range, range), |dash| (&range[..dash], &range[dash + 1..]));
+    let part = Part { first: signed(first)?, last: signed(last)?, step };
     (part.first <= part.last && part.step > 0).then_some(part)
+}
+
+fn signed(text: &str) -> Option<i64> {
+    let (sign, digits) = text.strip_prefix('-').map_or((1, text), |digits| (-1, digits));
+    whole(digits).map(|number| sign * i64::from(number))
+}
+
+fn whole(text: &str) -> Option<u32> {
+    text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten()
 }
 
 /// The file of a frame: `####` in the name of `path`, or `%04d`, stands for its number, with as many digits at least. `None` if the name has
@@ -127,18 +150,20 @@ mod tests {
             ("7,9", vec![7, 9]),
             ("20-22,1-5x2,3-4", vec![1, 3, 4, 5, 20, 21, 22]),
             ("4294967290-4294967295x4", vec![4294967290, 4294967294]),
+            ("-3-0", vec![-3, -2, -1, 0]),
+            ("-7--1x3", vec![-7, -4, -1]),
+            ("-5", vec![-5]),
         ] {
             let frames: Frames = text.parse().unwrap();
             assert_eq!((frames.numbers().collect::<Vec<_>>(), frames.to_string()), (numbers, text.to_owned()));
         }
-        for (text, shown) in [("7-7", "7"), ("1-5:2", "1-5x2"), (" 9, 7 ", "9,7")] {
+        for (text, shown) in [("7-7", "7"), ("5-5", "5"), ("1-5:2", "1-5x2"), (" 9, 7 ", "9,7"), ("-3-0:3", "-3-0x3")] {
             assert_eq!(text.parse::<Frames>().unwrap().to_string(), shown);
         }
         let frames: Frames = "9,2-4".parse().unwrap();
         assert_eq!((frames.first(), frames.last()), (2, 9));
         let wrong = [
             "",
-            "-",
             "3-1",
             "1-3x0",
             "1-",
@@ -151,6 +176,11 @@ mod tests {
             "1-99999999999",
             "7,",
             ",7",
+            "--3",
+            "1--3",
+            "-1--3",
+            "-",
+            "é-3",
         ];
         for wrong in wrong {
             assert!(wrong.parse::<Frames>().is_err(), "{wrong}");

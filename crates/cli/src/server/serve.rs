@@ -1,0 +1,141 @@
+//! The server: it answers calls one after the other.
+
+use std::io::{self, Read};
+use std::net::Shutdown;
+use std::os::fd::OwnedFd;
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, absolute};
+use std::sync::PoisonError;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use std::{env, thread};
+
+use lightmesh::request::Warm;
+
+use super::call::{Answer, Asked, Call, Form, Rendering, VERSION};
+use super::socket::{STREAMS, Socket, receive, send};
+use super::{ServerError, client, streams};
+use crate::failure::{Failure, INTERRUPTED};
+use crate::job::Job;
+use crate::{color, interrupt, memory, output};
+
+/// What is done with a connection.
+enum Done {
+    /// Nothing was asked for.
+    Nothing,
+    /// It was answered; what to say in the log.
+    Answered(String),
+    /// The server shall end.
+    Stop,
+}
+
+/// Does a job with what is warm; returns the exit code.
+type Work = dyn Fn(&Job, &mut Warm) -> u8;
+
+/// Answers calls at a socket until it shall end, or there was none for so long. Jobs are done by `work`.
+pub(crate) fn serve(path: &Path, idle: Duration, work: &Work) -> Result<(), Failure> {
+    let socket = Socket::listen(path)?;
+    let mut again = client::server(&absolute(path).unwrap_or_else(|_| path.to_owned()), idle);
+    *interrupt::AGAIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(move || {
+        streams::bring_back();
+        // If that fails, the process ends.
+        let _ = again.exec();
+    }));
+    output::complain(&format!("serving at {}", path.display()));
+    let mut warm = Warm::default();
+    loop {
+        let wrong = |reason| ServerError::Listen { path: path.to_owned(), reason };
+        let Some(stream) = socket.next(idle).map_err(wrong)? else {
+            output::complain(&format!("ends, since nothing was asked for in {} s (--idle)", idle.as_secs()));
+            return Ok(());
+        };
+        match answer(&stream, work, &mut warm) {
+            Ok(Done::Nothing) => {}
+            Ok(Done::Answered(said)) => output::complain(&said),
+            Ok(Done::Stop) => {
+                drop(socket);
+                // If nobody waits any more, it does not matter.
+                let _ = reply(&stream, &Answer::Exit(0));
+                return Ok(());
+            }
+            Err(error) => output::complain(&format!("a call could not be answered: {error}")),
+        }
+    }
+}
+
+fn answer(stream: &UnixStream, work: &Work, warm: &mut Warm) -> io::Result<Done> {
+    let (line, descriptors) = receive(stream)?;
+    if line.is_empty() {
+        return Ok(Done::Nothing);
+    }
+    let Form { version } = serde_json::from_slice(&line)?;
+    if version != VERSION {
+        reply(stream, &Answer::Version(VERSION.to_owned()))?;
+        return Ok(Done::Answered(format!("a client of version {version} was refused")));
+    }
+    let Call { asked: Asked::Render(rendering), .. } = serde_json::from_slice(&line)? else { return Ok(Done::Stop) };
+    let descriptors = <[OwnedFd; STREAMS]>::try_from(descriptors)
+        .map_err(|_| io::Error::other("it came without standard output and error"))?;
+    let (begin, what) = (Instant::now(), described(&rendering));
+    let code = done(stream, *rendering, descriptors, |job| work(job, warm))?;
+    // A client that has died hears nothing.
+    let _ = reply(stream, &Answer::Exit(code));
+    Ok(Done::Answered(format!("{what}: exit code {code} after {:.3} s", begin.elapsed().as_secs_f64())))
+}
+
+fn reply(stream: &UnixStream, answer: &Answer) -> io::Result<()> {
+    send(stream, &serde_json::to_vec(answer)?, &[])
+}
+
+/// What is rendered, for the log.
+fn described(rendering: &Rendering) -> String {
+    let scene = rendering.scene.to_string_lossy().into_owned();
+    match &rendering.request.frames {
+        Some(frames) => format!("{scene}, frames {frames}"),
+        None => scene,
+    }
+}
+
+/// Has a job done as its client would; returns the exit code.
+fn done(
+    stream: &UnixStream,
+    rendering: Rendering,
+    descriptors: [OwnedFd; STREAMS],
+    work: impl FnOnce(&Job) -> u8,
+) -> io::Result<u8> {
+    env::set_current_dir(&rendering.folder)?;
+    interrupt::clear();
+    let replaced = streams::replace(descriptors)?;
+    let usual = color::when();
+    color::set(rendering.color);
+    let job = rendering.into_job();
+    memory::limit(Some(job.order.request.memory_limit));
+    let is_done = AtomicBool::new(false);
+    let code = thread::scope(|scope| {
+        // Ends when the client closes its side, or this one is closed.
+        scope.spawn(|| {
+            let mut rest = [0; 16];
+            while { stream }.read(&mut rest).is_ok_and(|count| count > 0) {}
+            if !is_done.load(Ordering::SeqCst) {
+                interrupt::request(INTERRUPTED);
+            }
+        });
+        let code = work(&job);
+        is_done.store(true, Ordering::SeqCst);
+        let _ = stream.shutdown(Shutdown::Read);
+        code
+    });
+    memory::limit(None);
+    let code = match interrupt::code() {
+        Some(code) => {
+            output::complain(&interrupt::ended());
+            code
+        }
+        None => code,
+    };
+    color::set(usual);
+    drop(replaced);
+    interrupt::clear();
+    Ok(code)
+}
