@@ -10,6 +10,7 @@ use lightmesh::render::{Make, MeshCache, PreparedScene, Progress, Unobserved, Wo
 use lightmesh::request::files::Files;
 use lightmesh::request::{Error, FrameDone, Host, Order, Plan, Request, Session};
 use lightmesh::{Device, Frame, Observer, RenderError, Renderer, Settings};
+use lightmesh_memory::OverBudget;
 
 /// How long a test waits for what must happen.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -29,6 +30,8 @@ struct Events {
     most: usize,
     /// Images that were not the whole.
     parts: usize,
+    /// Whether a device has no memory.
+    is_short: bool,
     told: Vec<Progress>,
     notes: Vec<String>,
 }
@@ -286,6 +289,30 @@ fn the_frame_of_a_device_that_fails_goes_to_the_others() {
     for device in ["device 0", "device 2"] {
         assert!(notes.contains(&format!("{device} has failed; other devices take its frame ")), "{notes}");
     }
+}
+
+#[test]
+fn a_device_whose_memory_is_short_waits_until_frames_are_written() {
+    /// Has no memory for its second image while its first one is written.
+    fn hungry(number: usize, log: &Log) -> Result<(), RenderError> {
+        if number != 1 {
+            return Ok(());
+        }
+        log.wait_until(|events| !events.written.is_empty());
+        log.change(|events| events.is_short = true);
+        Err(RenderError::BuildMemory { triangles: 1, short: OverBudget { needed: 2, left: 1, limit: None } })
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (renderer, host) = several(&[hungry, lost]);
+    let written = |log: &Log| {
+        log.wait_until(|events| events.is_short);
+        std::thread::sleep(Duration::from_millis(300));
+    };
+    let host = Listener { written, ..host };
+    write(&order(GAZEBO.as_ref(), folder.path(), &[("turntable", "3")]), &renderer, &host).unwrap();
+    let events = host.log.events.lock().unwrap();
+    assert!(events.written.len() == 3 && events.begun == 5, "one frame was begun twice, and one by who is lost");
+    assert!(events.notes.iter().all(|note| !note.starts_with("device 0 has failed")), "{:?}", events.notes);
 }
 
 #[test]

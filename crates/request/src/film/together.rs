@@ -88,7 +88,12 @@ pub(crate) fn render_ahead(
     let crew = Crew::new(FrameQueue::new(numbers, numbers.len(), true), devices.iter().map(|_| None), context.host);
     let (reel, kept) = renderer.on(devices);
     let work = |number, device: &dyn Worker, kept| render(&crew, reel, (number, device), kept, context);
-    let finished = || std::iter::from_fn(|| crew.wait_for(FrameQueue::begin_to_write)).collect();
+    let next = || {
+        let frame = crew.wait_for(FrameQueue::begin_to_write)?;
+        crew.change(FrameQueue::end_to_write);
+        Some(frame)
+    };
+    let finished = || std::iter::from_fn(next).collect();
     let (_, finished) = context.host.during(RENDERING, || crew.run(devices, kept, work, finished));
     let (frames, _, error) = crew.into_result();
     (finished, frames.all_or(error))
@@ -210,7 +215,9 @@ impl<F: Send> Work for FrameQueue<F> {
         let frame = self.returned.pop().or_else(|| {
             // A frame that comes late holds up those after it that may be in memory.
             let next = if self.order.is_some() { self.left.len().min(self.most) } else { self.left.len() };
-            let is_late = |speed| team.is_late(device, speed, 1.0, next as f64);
+            // Others are at their own before they do these.
+            let busy = self.in_memory - self.finished.len() - usize::from(self.is_writing);
+            let is_late = |speed| team.is_late(device, speed, 1.0, (next + busy) as f64);
             let takes = self.in_memory < self.most && !team.speed(device).is_some_and(is_late);
             if takes { self.left.pop_front() } else { None }
         })?;
@@ -301,14 +308,36 @@ mod tests {
         thread::scope(|scope| {
             let third = scope.spawn(|| take(&crew, 1));
             thread::sleep(Duration::from_millis(100));
-            assert!(!third.is_finished());
+            let before = third.is_finished();
             finish(&crew, 1);
-            assert_eq!(next(&crew), Some(10));
+            let written = next(&crew);
             thread::sleep(Duration::from_millis(100));
-            assert!(!third.is_finished(), "it is being written");
+            let meanwhile = third.is_finished();
             crew.change(FrameQueue::end_to_write);
+            thread::sleep(Duration::from_millis(100));
+            crew.stop();
+            assert_eq!((before, written, meanwhile), (false, Some(10), false));
             assert_eq!(third.join().unwrap(), Some(3));
         });
+    }
+
+    #[test]
+    fn a_device_takes_no_frame_that_others_finish_before() {
+        for (seconds, takes) in [(1.2, true), (9.0, false)] {
+            let crew = crew(9, false);
+            assert_eq!([take(&crew, 0), take(&crew, 1)], [Some(1), Some(2)]);
+            finish(&crew, 1);
+            crew.finish(1, (1.0, seconds), |frames| assert!(frames.finished.insert(2, 20).is_none()));
+            // Others are at two frames, and one is left.
+            assert_eq!([take(&crew, 0), take(&crew, 0)], [Some(3), Some(5)]);
+            thread::scope(|scope| {
+                let second = scope.spawn(|| take(&crew, 1));
+                thread::sleep(Duration::from_millis(100));
+                let has_taken = second.is_finished();
+                crew.stop();
+                assert_eq!(has_taken, takes);
+            });
+        }
     }
 
     #[test]
