@@ -24,6 +24,9 @@ pub type Make = Box<dyn FnOnce() -> Result<Box<dyn Worker>, RenderError> + Send>
 /// # Errors
 /// [`RenderError::Threads`] if the thread cannot be started.
 pub fn waking(makes: Vec<(String, Make)>) -> Result<Vec<Box<dyn Worker>>, RenderError> {
+    if makes.is_empty() {
+        return Ok(Vec::new());
+    }
     let names: Vec<String> = makes.iter().map(|(name, _)| name.clone()).collect();
     let maker = Arc::new(Maker::begin(makes)?);
     let waking = |(number, name)| Waking { name, id: new_id(), maker: Arc::clone(&maker), number };
