@@ -75,13 +75,14 @@ class Kept:
     @staticmethod
     def _write(folder: Path, path: Path, band: GivenBand) -> None:
         _, color, alpha, stats = band
-        arrays = {"color": color, "stats": np.frombuffer(stats.encode(), np.uint8)}
-        if alpha is not None:
-            arrays["alpha"] = alpha
+        told = np.frombuffer(stats.encode(), np.uint8)
         try:
             folder.mkdir(exist_ok=True)
             with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as file:
-                np.savez(file, **arrays)
+                if alpha is None:
+                    np.savez(file, color=color, stats=told)
+                else:
+                    np.savez(file, color=color, stats=told, alpha=alpha)
             os.replace(file.name, path)
         except OSError as error:
             raise SaveError(f"cannot keep rows of the picture in {folder} ({error}); give the output a folder with room for 16 bytes a pixel") from error

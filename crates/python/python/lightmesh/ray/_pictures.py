@@ -43,7 +43,7 @@ def picture(
 
     `cpus_per_actor`, `gpus_per_actor`, `actors`, `ship`, `on_progress` and the other keywords are as in `film`. Bands that are finished stay in a folder
     beside the output, named like it with `.bands` at the end, until the picture is written. If its leader dies, the same call with `resume=True` goes on
-    with those; without it, or with another scene or other settings, they are rendered anew.
+    with those; without `resume`, or with another scene or other settings, they are rendered anew.
     """
     given = settings(request)
     each = share(cpus_per_actor, gpus_per_actor, given.get("device"))
@@ -72,6 +72,7 @@ def render(leader: Leader, render_pass: str, kept: Kept) -> list[GivenBand]:
     _, top, width, height = told["area"]
     whole = range(top, top + height)
     found = kept.found(render_pass, width, whole)
+    leader.report.kept += len(found)
     units = []
     for gap in gaps(whole, found):
         first = gap.start
