@@ -14,8 +14,10 @@
 
 use glam::DVec3;
 
-use crate::Spans;
-use crate::path::{DAY, RATE, SunPath};
+use crate::path::SunPath;
+use crate::samples::by_samples;
+use crate::spans::Spans;
+use crate::time::{DAY, RATE};
 use crate::turn::atan2;
 
 /// A root is settled when a step is shorter, in seconds: the next would be below 10⁻⁹.
@@ -26,8 +28,6 @@ const STEPS: usize = 8;
 const FAR: f64 = 5400.0;
 /// Times of interest are widened by so many seconds at least.
 const MARGIN: f64 = 60.0;
-/// Seconds between samples.
-const SAMPLE: f64 = 120.0;
 
 /// The times of the path when m·s ≥ 0. Ends outside of the times `of_interest` are those of the circle.
 pub(crate) fn positive(path: &SunPath, m: DVec3, of_interest: (f64, f64)) -> Spans {
@@ -54,7 +54,7 @@ pub(crate) fn positive(path: &SunPath, m: DVec3, of_interest: (f64, f64)) -> Spa
             }
         }
     }
-    by_samples(path, m)
+    by_samples(|time| path.at(time), path.hull, m)
 }
 
 /// The time of an angle that is nearest to the middle of the path.
@@ -89,7 +89,7 @@ fn newton(path: &SunPath, m: DVec3, start: f64, rises: bool) -> Option<f64> {
         }
         let by = value / slope;
         time -= by;
-        if !((time - start).abs() <= FAR) {
+        if time.is_nan() || (time - start).abs() > FAR {
             return None;
         }
         if by.abs() < 1e-7 || step >= 1 && by.abs() < SETTLED {
@@ -97,68 +97,4 @@ fn newton(path: &SunPath, m: DVec3, start: f64, rises: bool) -> Option<f64> {
         }
     }
     None
-}
-
-/// The same by samples: for planes that are tangent, and what must be right whatever the circle.
-pub(crate) fn by_samples(path: &SunPath, m: DVec3) -> Spans {
-    let (begin, end) = path.hull;
-    let count = ((end - begin) / SAMPLE).ceil().max(4.0) as usize;
-    let step = (end - begin) / count as f64;
-    // More than a parabola can rise between two samples.
-    let rise = m.length() * (RATE * step) * (RATE * step) * 0.5;
-    let at = |time: f64| {
-        let (direction, change) = path.at(time);
-        (m.dot(direction), m.dot(change))
-    };
-    let is_on = |value: f64| value >= 0.0;
-    let (mut spans, mut from) = (Spans::default(), begin);
-    let mut before = at(begin);
-    let mut was_on = is_on(before.0);
-    let mut change = |time: f64| {
-        if was_on {
-            spans.push(from, time);
-        }
-        (was_on, from) = (!was_on, time);
-    };
-    for sample in 0..count {
-        let (low, high) = (begin + step * sample as f64, begin + step * (sample + 1) as f64);
-        let now = at(high);
-        if is_on(before.0) != is_on(now.0) {
-            change(bisected(path, m, low, high));
-        } else if before.0.abs().min(now.0.abs()) < rise
-            && (before.1 > 0.0) != (now.1 > 0.0)
-            && (before.1 > 0.0) != is_on(before.0)
-        {
-            // It turns towards zero.
-            let turning = halved(low, high, |time| (at(time).1 > 0.0) == (before.1 > 0.0));
-            if is_on(at(turning).0) != is_on(before.0) {
-                change(bisected(path, m, low, turning));
-                change(bisected(path, m, turning, high));
-            }
-        }
-        before = now;
-    }
-    if was_on {
-        spans.push(from, end);
-    }
-    spans
-}
-
-/// Where m·s changes its sign between `low` and `high`.
-fn bisected(path: &SunPath, m: DVec3, low: f64, high: f64) -> f64 {
-    let is_on = |time: f64| m.dot(path.at(time).0) >= 0.0;
-    let first = is_on(low);
-    halved(low, high, |time| is_on(time) == first)
-}
-
-/// The end of what is `as_before` from `low` on.
-fn halved(mut low: f64, mut high: f64, as_before: impl Fn(f64) -> bool) -> f64 {
-    while high - low > 1e-9 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if as_before(middle) { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
 }

@@ -22,15 +22,19 @@
 //! sun's paths (Szokolay, *Solar Geometry*, 1996) are the circle cut by edges, by hand.
 #![forbid(unsafe_code)]
 
+mod blocker;
 mod edge;
 mod open;
 mod path;
+mod samples;
 mod spans;
+mod time;
 mod tree;
 mod triangle;
 mod turn;
 
+pub use blocker::{Blocker, Receiver};
 pub use open::{MANY, Open, Taken};
 pub use path::{Place, PlaceError, SunPath, arcs_of_day};
 pub use spans::Spans;
-pub use tree::{Blocker, HourTable, Receiver, Tree, Walker};
+pub use tree::{HourTable, Tree, Walker};

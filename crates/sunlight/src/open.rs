@@ -1,6 +1,6 @@
 //! What is still open of a receiver's day, and who has taken the rest.
 
-use crate::Spans;
+use crate::spans::Spans;
 
 /// Of several objects.
 pub const MANY: u32 = u32::MAX;

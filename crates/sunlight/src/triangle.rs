@@ -6,9 +6,10 @@
 
 use glam::DVec3;
 
-use crate::Spans;
 use crate::edge::positive;
-use crate::path::{RATE, SunPath};
+use crate::path::SunPath;
+use crate::spans::Spans;
+use crate::time::RATE;
 
 /// A triangle, as tests of it need it.
 #[derive(Clone, Copy, Debug)]

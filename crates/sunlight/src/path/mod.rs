@@ -9,19 +9,14 @@
 
 mod place;
 
-use std::f64::consts::TAU;
-
 use glam::{DMat3, DVec3};
 
 pub use place::{Place, PlaceError};
 
-use crate::Spans;
-use crate::edge;
+use crate::samples::by_samples;
+use crate::spans::Spans;
+use crate::time::{DAY, RATE};
 
-/// Seconds of a day.
-pub(crate) const DAY: f64 = 86_400.0;
-/// Radians of hour angle in a second.
-pub(crate) const RATE: f64 = TAU / DAY;
 /// Seconds between two points of the table.
 const STEP: f64 = 120.0;
 /// The table goes on for so many points beyond half a day before and after noon: Newton steps may leave the day, and slopes need two.
@@ -96,7 +91,7 @@ impl SunPath {
             axes: sky.axes(),
         };
         path.noon = path.highest(sky.up(), center);
-        path.up = edge::by_samples(&path, sky.up());
+        path.up = by_samples(|time| path.at(time), path.hull, sky.up());
         let (Some(first), Some(last)) = (path.up.list().first().copied(), path.up.list().last().copied()) else {
             return Ok(None);
         };

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use solar_positioning::time::JulianDate;
 use solar_positioning::{Location, SolarPositions, delta_t};
 
-use super::DAY;
+use crate::time::DAY;
 
 /// The lowest elevation, in degrees, whose refraction is computed.
 const LOWEST: f64 = -1.8;

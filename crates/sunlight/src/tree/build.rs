@@ -7,8 +7,9 @@
 use glam::{DMat3, Vec3};
 use rayon::join;
 
-use super::{Blocker, LEAF, NONE, Node, ROUNDING, WIDTH};
-use crate::MANY;
+use super::node::{LEAF, NONE, Node, ROUNDING, WIDTH};
+use crate::blocker::Blocker;
+use crate::open::MANY;
 
 /// Bins along an axis.
 const BINS: usize = 16;

@@ -4,7 +4,7 @@
 //! So a box, seen from a receiver, can be before the sun only if it reaches the band between the day's least and greatest slope, and then only between the
 //! times of its first and last angle, which two of its corners have. Angles are looked up in bins; a pseudo-angle stands for them.
 
-use crate::SunPath;
+use crate::path::SunPath;
 
 /// Bins of the whole turn.
 const BINS: usize = 2048;
@@ -111,46 +111,10 @@ impl HourTable {
             return Some((self.always(), distance));
         }
         // The corners with the first and the last angle, seen from the axis.
-        let first = [
-            if z0 > 0.0 {
-                x1
-            } else if z1 < 0.0 {
-                x0
-            } else if x0 > 0.0 {
-                x0
-            } else {
-                x1
-            },
-            if x0 > 0.0 {
-                z0
-            } else if x1 < 0.0 {
-                z1
-            } else if z0 > 0.0 {
-                z0
-            } else {
-                z1
-            },
-        ];
-        let last = [
-            if z0 > 0.0 {
-                x0
-            } else if z1 < 0.0 {
-                x1
-            } else if x0 > 0.0 {
-                x0
-            } else {
-                x1
-            },
-            if x0 > 0.0 {
-                z1
-            } else if x1 < 0.0 {
-                z0
-            } else if z0 > 0.0 {
-                z0
-            } else {
-                z1
-            },
-        ];
+        let (west, crosses_x) = (z0 > 0.0, z1 >= 0.0);
+        let (noon, crosses_z) = (x0 > 0.0, x1 >= 0.0);
+        let first = [if west || crosses_x && !noon { x1 } else { x0 }, if noon || crosses_z && west { z0 } else { z1 }];
+        let last = [if west || crosses_x && noon { x0 } else { x1 }, if noon || crosses_z && !west { z1 } else { z0 }];
         let [first, last] = [first, last].map(|[x, z]| pseudo_angle(x, z));
         let (begin, end) = (self.earliest[bin(first)], self.latest[bin(last)]);
         let times = if first <= last {

@@ -6,54 +6,21 @@
 
 mod build;
 mod hours;
+mod node;
 
 use glam::{DMat3, DVec3};
 
 pub use hours::HourTable;
 
+use self::node::{LEAF, NONE, Node, ROUNDING, WIDTH};
+use crate::blocker::{Blocker, Receiver};
+use crate::edge::positive;
+use crate::open::{MANY, Open};
+use crate::path::SunPath;
 use crate::triangle::Facet;
-use crate::{Open, SunPath};
 
-/// Children of a node.
-const WIDTH: usize = 8;
-/// Marks a child that is a triangle.
-const LEAF: u32 = 1 << 31;
-/// A child that is not there.
-const NONE: u32 = u32::MAX;
 /// A triangle whose plane passes a point closer than this, relative to the extent of all, is seen edge-on.
 const FLAT: f64 = 1e-10;
-/// Single precision rounds coordinates by so much, relatively, and differences of two by twice that.
-const ROUNDING: f32 = 1.5e-7;
-
-/// A triangle that hides the sun.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Blocker {
-    /// Its corners.
-    pub corners: [DVec3; 3],
-    /// The object that it belongs to, below [`MANY`](crate::MANY).
-    pub object: u32,
-}
-
-/// A point that may see the sun.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Receiver {
-    /// Where it is.
-    pub point: DVec3,
-    /// It sees only what is in front of the plane with this normal; zero: everything.
-    pub normal: DVec3,
-}
-
-/// Eight boxes, and what is in them.
-#[derive(Clone, Debug)]
-struct Node {
-    low: [[f32; WIDTH]; 3],
-    high: [[f32; WIDTH]; 3],
-    /// A node, or a facet with the mark [`LEAF`].
-    child: [u32; WIDTH],
-    /// The object that all in a box belongs to, else [`MANY`](crate::MANY).
-    object: [u32; WIDTH],
-}
-
 /// What hides the sun, for any day of a place.
 #[derive(Clone, Debug)]
 pub struct Tree {
@@ -104,7 +71,7 @@ impl Tree {
         let Walker { open, stack, near } = walker;
         let in_front = match receiver.normal == DVec3::ZERO {
             true => path.up,
-            false => path.up.and(&crate::edge::positive(path, receiver.normal, path.hull)),
+            false => path.up.and(&positive(path, receiver.normal, path.hull)),
         };
         open.begin(&in_front, attributes);
         let point = self.axes * receiver.point;
@@ -112,7 +79,7 @@ impl Tree {
         let slack = ROUNDING * point.iter().fold(0.0, |far: f32, value| far.max(value.abs()));
         stack.clear();
         if !self.nodes.is_empty() {
-            stack.push(Entry { child: 0, object: crate::MANY, times: hours.always() });
+            stack.push(Entry { child: 0, object: MANY, times: hours.always() });
         }
         while let Some(Entry { child, object, times }) = stack.pop() {
             if !open.touches(&times, object) {
