@@ -59,10 +59,14 @@ fn what_people_change_is_a_parameter_and_the_rest_an_argument() {
     assert!(arguments.contains(&"--resume") && arguments.contains(&"--exposure=-1"), "{arguments:?}");
     let needed = &job["steps"][0]["hostRequirements"]["amounts"];
     assert_eq!(needed, &json!([{"name": "amount.worker.gpu", "min": 2}, {"name": "amount.worker.vcpu", "min": 4}]));
-    let alone = self::job(&place, &["--no-server", "--chunks", "noncontiguous"]);
+    let constraint = |job: &Value| {
+        let parameters = &job["steps"][0]["parameterSpace"]["taskParameterDefinitions"];
+        parameters[0]["chunks"]["rangeConstraint"].clone()
+    };
+    assert_eq!(constraint(&job), "NONCONTIGUOUS");
+    let alone = self::job(&place, &["--no-server", "--chunks", "contiguous"]);
     assert!(alone["steps"][0].get("stepEnvironments").is_none() && !self::arguments(&alone).contains(&"--server"));
-    let chunks = &alone["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0]["chunks"];
-    assert_eq!(chunks["rangeConstraint"], "NONCONTIGUOUS");
+    assert_eq!(constraint(&alone), "CONTIGUOUS");
 }
 
 #[test]
