@@ -20,6 +20,9 @@ use crate::failure::{Failure, INTERRUPTED};
 use crate::job::Job;
 use crate::{color, interrupt, memory, output};
 
+/// How long a client may take to say what it wants: others wait.
+const PATIENCE: Duration = Duration::from_secs(5);
+
 /// What is done with a connection.
 enum Done {
     /// Nothing was asked for.
@@ -65,7 +68,9 @@ pub(crate) fn serve(path: &Path, idle: Duration, work: &Work) -> Result<(), Fail
 }
 
 fn answer(stream: &UnixStream, work: &Work, warm: &mut Warm) -> io::Result<Done> {
+    stream.set_read_timeout(Some(PATIENCE))?;
     let (line, descriptors) = receive(stream)?;
+    stream.set_read_timeout(None)?;
     if line.is_empty() {
         return Ok(Done::Nothing);
     }
@@ -104,6 +109,7 @@ fn done(
     descriptors: [OwnedFd; STREAMS],
     work: impl FnOnce(&Job) -> u8,
 ) -> io::Result<u8> {
+    let own_folder = env::current_dir();
     env::set_current_dir(&rendering.folder)?;
     interrupt::clear();
     let replaced = streams::replace(descriptors)?;
@@ -137,5 +143,7 @@ fn done(
     color::set(usual);
     drop(replaced);
     interrupt::clear();
+    // Who removes or unmounts the client's folder is not in the way of this process.
+    let _ = own_folder.and_then(env::set_current_dir);
     Ok(code)
 }
