@@ -12,7 +12,7 @@ mod template;
 
 use std::ffi::OsStr;
 use std::fs;
-use std::path::{Path, PathBuf, absolute};
+use std::path::{Component, Path, PathBuf, absolute};
 
 use lightmesh::Device;
 use lightmesh::request::files::is_standard;
@@ -395,14 +395,14 @@ fn folder_of(output: &Path) -> &Path {
     if is_standard(output) { Path::new(".") } else { directory(output) }
 }
 
-/// A path from `folder` on, if it lies in it.
+/// A path from `folder` on, if it lies in it: by the names, in which links stay what they are, or by where they lead.
 fn within(path: &Path, folder: &Path) -> Option<PathBuf> {
-    let real = |path: &Path| fs::canonicalize(path).ok();
-    let inside = match path.file_name() {
-        // What is a link stays one.
-        Some(name) if !path.is_dir() => real(directory(path))?.join(name).strip_prefix(real(folder)?).ok()?.to_owned(),
-        _ => real(path)?.strip_prefix(real(folder)?).ok()?.to_owned(),
+    let named = || {
+        let inside = absolute(path).ok()?.strip_prefix(absolute(folder).ok()?).ok()?.to_owned();
+        inside.components().all(|part| matches!(part, Component::Normal(_))).then_some(inside)
     };
+    let real = || Some(fs::canonicalize(path).ok()?.strip_prefix(fs::canonicalize(folder).ok()?).ok()?.to_owned());
+    let inside = named().or_else(real)?;
     Some(if inside.as_os_str().is_empty() { PathBuf::from(".") } else { inside })
 }
 
