@@ -118,8 +118,9 @@ fn jobs_that_no_farm_can_render_are_refused() {
     for (flags, sentence) in [
         (&["--frames-to", "f.#.png", "-o", "job.txt"][..], "-o job.txt: a job is a .yaml or a .json file"),
         (&["--frames-to", "f.mp4", "-o", "job.yaml"], "--frames-to f.mp4: tasks write frames"),
-        (&["--frames-to", "f.png", "-o", "job.yaml"], "write #### where the number goes"),
-        (&["--frames-to", "f{{.#.png", "-o", "job.yaml"], "begins a reference in a job template"),
+        (&["--frames-to", "f.png", "-o", "job.yaml"], "--frames-to f.png: each frame needs a name of its own"),
+        (&["--frames-to", "f{{.#.png", "-o", "job.yaml"], "`f{{.#.png` contains {{ or }}"),
+        (&["--frames-to", "f}}.#.png", "-o", "job.yaml"], "`f}}.#.png` contains {{ or }}"),
         (&["--frames-to", "-", "-o", "job.yaml"], "--frames-to -: tasks of a farm write files"),
     ] {
         let message = place.refused(&[&film[..], flags].concat());

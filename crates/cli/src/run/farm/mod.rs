@@ -18,7 +18,7 @@ use lightmesh::Device;
 use lightmesh::request::files::is_standard;
 use lightmesh::request::film::Container;
 use lightmesh::request::table::Kind;
-use lightmesh::request::value::Frames;
+use lightmesh::request::value::{Frames, numbered};
 use lightmesh::request::{FIELDS, Field, Name, Order, Plan, Request, RequestError, Words, field};
 use lightmesh_files::directory;
 
@@ -40,6 +40,8 @@ const PROGRAM: &str = "{{Param.Program}}";
 const SOCKET: &str = "{{Session.WorkingDirectory}}/lightmesh.sock";
 /// Where the server of a session says what it does.
 const LOG: &str = "{{Session.WorkingDirectory}}/lightmesh-server.log";
+/// How long a session may have no task before its server ends: one that is killed leaves it behind.
+const IDLE: &str = "1h";
 /// Seconds in which a task that is cancelled ends by itself.
 const NOTICE: u32 = 30;
 /// Seconds that a server may take to begin or to end.
@@ -101,6 +103,9 @@ fn check(order: &Order) -> Result<(), FarmError> {
     let picture = order.files.output.as_deref().unwrap_or(Path::new(""));
     if Container::from_path(picture).is_some() {
         return Err(FarmError::Movie(picture.to_owned()));
+    }
+    if !is_standard(picture) && numbered(picture, 1).is_none() {
+        return Err(FarmError::NoNumber(picture.to_owned()));
     }
     if is_standard(&order.scene) {
         return Err(FarmError::StandardInput);
@@ -342,14 +347,12 @@ impl<'a> Job<'a> {
         let (job, count) = (self.args.output.display(), frames.numbers().count());
         let mut text = format!("{job}: {count} frames, {} in a task", self.args.frames_per_task);
         if !is_standard(&self.args.output) {
-            text += &format!("; `openjd run {job}` renders them here");
+            let given = self.missing.iter().map(|(name, path)| format!(" -p {name}={}", quoted(path)));
+            let given: String = given.collect();
+            text += &format!("; `openjd run {}{given}` renders them here", quoted(&self.args.output));
         }
         if !self.missing.is_empty() {
-            let given = self.missing.iter().map(|(name, path)| format!(" -p {name}={}", path.display()));
-            text += &format!(
-                "; what is not in the folder of the job is given when it is submitted, as in{}",
-                given.collect::<String>()
-            );
+            text += "; what is not in the job's folder is given when it is submitted";
         }
         text
     }
@@ -363,8 +366,10 @@ fn server() -> Environment {
         timeout: Some(PATIENCE),
         cancelation: None,
     };
-    let actions =
-        EnvironmentActions { on_enter: action(&["--background", "--log", LOG]), on_exit: action(&["--stop"]) };
+    let actions = EnvironmentActions {
+        on_enter: action(&["--background", "--idle", IDLE, "--log", LOG]),
+        on_exit: action(&["--stop"]),
+    };
     Environment { name: "Server", script: Script { actions } }
 }
 
@@ -406,11 +411,22 @@ fn within(path: &Path, folder: &Path) -> Option<PathBuf> {
     Some(if inside.as_os_str().is_empty() { PathBuf::from(".") } else { inside })
 }
 
+/// A path as shells read it.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |character: char| character.is_ascii_alphanumeric() || "_-./:@%+=,".contains(character);
+    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}
+
 fn text(path: &Path) -> Result<String, FarmError> {
     path.to_str().map(str::to_owned).ok_or_else(|| FarmError::NotUnicode(path.to_owned()))
 }
 
 /// Text that means itself in a template.
 fn literal(text: &str) -> Result<String, FarmError> {
-    if text.contains("{{") { Err(FarmError::Reference(text.to_owned())) } else { Ok(text.to_owned()) }
+    if text.contains("{{") || text.contains("}}") {
+        Err(FarmError::Reference(text.to_owned()))
+    } else {
+        Ok(text.to_owned())
+    }
 }
