@@ -177,9 +177,18 @@ fn told(aborted: &Aborted) -> String {
     }
 }
 
-/// What to do instead of exiting when memory has run out.
+/// What to do instead of exiting when memory has run out, which a text says.
 #[cfg(unix)]
-pub(crate) static AGAIN: Mutex<Option<Box<dyn FnOnce(&str) + Send>>> = Mutex::new(None);
+static AGAIN: Mutex<Option<Again>> = Mutex::new(None);
+
+#[cfg(unix)]
+type Again = Box<dyn FnOnce(&str) + Send>;
+
+/// Does this instead of exiting when memory has run out.
+#[cfg(unix)]
+pub(crate) fn begin_again(again: Again) {
+    *AGAIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(again);
+}
 
 /// The same for another reason, which is the message, unless it is known that outputs are there.
 pub(crate) fn end(code: u8, reason: &str) -> ! {

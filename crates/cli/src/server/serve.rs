@@ -6,7 +6,6 @@ use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
-use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use std::{env, thread};
@@ -48,7 +47,7 @@ pub(crate) fn serve(path: &Path, idle: Duration, inherits: bool, work: &Work) ->
     let mut again = client::server(path, idle);
     // Those who wait stay connected.
     again.arg("--inherit").stdin(socket.listener().map_err(wrong)?);
-    *interrupt::AGAIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(move |reason| {
+    interrupt::begin_again(Box::new(move |reason| {
         streams::bring_back();
         // Standard error itself belongs to the last message.
         let _ = rustix::io::write(io::stderr().as_fd(), format!("{reason}; begins again\n").as_bytes());
