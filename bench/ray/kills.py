@@ -4,11 +4,11 @@
     python3 bench/ray/kills.py --kills 50 --seed 1
 
 Python needs the wheel, Ray and psutil. Films of 60 frames and pictures of 40 bands are rendered in turn, each while some processes are killed with
-SIGKILL: an actor, a node with all its actors (a new one joins soon), or the leader (which is started again, films with `resume`). After each
+SIGKILL: an actor, a node with all its actors (a new one joins soon), or the leader (which is started again with `resume`). After each
 
 * files are the same, to the byte, as those of one process, the manifest included;
 * no other file is there;
-* no unit was rendered more often than twice, and once for each kill that hit it. A kill of the leader hits what no manifest names: all of a picture.
+* no unit was rendered more often than twice, and once for each kill that hit it. A kill of the leader hits what no manifest names, and rows that are not kept.
 
 The first fault ends it with exit code 1.
 """
@@ -28,6 +28,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
 import psutil
 
 #: Nodes with a CPU each, beside the head, which has none.
@@ -114,7 +115,7 @@ class Trial:
         machine.rendered()
 
     def lead(self) -> subprocess.Popen:
-        settings = {**self.settings, **({"resume": True} if self.what == "film" else {})}
+        settings = {**self.settings, "resume": True}
         command = [sys.executable, "-c", LEAD, self.what, self.machine.cluster.address, str(self.output), json.dumps(settings)]
         return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=open(self.folder.parent / f"{self.folder.name}.log", "ab"), text=True)
 
@@ -129,7 +130,13 @@ class Trial:
                 self.hits[self.units[pid][-1]] += 1
 
     def recorded(self) -> set[str]:
-        """Frames that the manifest names."""
+        """Frames that the manifest names, and rows that are kept."""
+        if self.what == "picture":
+            found = set()
+            for path in self.folder.glob("*.bands/*.npz"):
+                first, rows = int(path.suffixes[-2][1:]), len(np.load(path)["color"])
+                found.add(f"rows {first} to {first + rows - 1}")
+            return found
         path = self.folder / "manifest.json"
         films = json.loads(path.read_text())["films"] if path.exists() else {}
         return {f"frame {number}" for film in films.values() for number in film["frames"]}

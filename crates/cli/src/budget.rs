@@ -42,7 +42,7 @@ mod tests {
     fn times_have_units() {
         let seconds = |text: &str| text.parse().map(|Budget(time)| time.as_secs_f64());
         assert_eq!([seconds("90"), seconds("90s"), seconds("1.5 m")], [Ok(90.0), Ok(90.0), Ok(90.0)]);
-        assert_eq!(seconds("2h"), Ok(7200.0));
+        assert_eq!([seconds("2h"), seconds("1E+3"), seconds("15e-1m")], [Ok(7200.0), Ok(1000.0), Ok(90.0)]);
         for text in ["", "m", "0", "-1m", "1d", "1e9", "1.2.3s", "99999999h", "0.0000000001"] {
             assert!(text.parse::<Budget>().is_err(), "{text}");
         }

@@ -12,8 +12,7 @@
 //! So nothing has to cooperate, be it reading, decoding, building or encoding. Libraries know nothing of signals. GPU memory is freed
 //! by the driver.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -36,8 +35,8 @@ static REQUESTED: AtomicU8 = AtomicU8::new(0);
 static MANNER: AtomicU8 = AtomicU8::new(Manner::AtOnce as u8);
 /// What the last message says about the outputs that are there.
 static REMARK: Mutex<String> = Mutex::new(String::new());
-/// A file that ends with the process.
-static REMOVED: Mutex<Option<PathBuf>> = Mutex::new(None);
+/// What else to do before the process ends.
+static AT_END: Mutex<Option<Box<dyn Fn() + Send>>> = Mutex::new(None);
 
 /// How work ends when the program shall end; later ones take longer.
 #[derive(Clone, Copy)]
@@ -133,10 +132,10 @@ pub(crate) fn ended() -> String {
     told(&take_written())
 }
 
-/// The file that is removed when the process ends, however it is asked to.
+/// What else to do before the process ends, however it is asked to.
 #[cfg(unix)]
-pub(crate) fn remove_at_end(path: Option<PathBuf>) {
-    *REMOVED.lock().unwrap_or_else(PoisonError::into_inner) = path;
+pub(crate) fn at_end(work: Option<Box<dyn Fn() + Send>>) {
+    *AT_END.lock().unwrap_or_else(PoisonError::into_inner) = work;
 }
 
 /// Leaves if the program shall end: called when it has ended by itself.
@@ -150,7 +149,7 @@ pub(crate) fn leave_if_requested() {
 /// Removes what is unfinished, says what is written, and exits. Of two threads that call this, one waits for the other to exit.
 fn leave(code: u8) -> ! {
     let aborted = abort();
-    remove();
+    finish();
     output::conclude(&told(&aborted));
     exit(code)
 }
@@ -161,11 +160,10 @@ fn abandon(code: u8) -> ! {
     exit(code)
 }
 
-/// Removes the file that ends with the process.
-fn remove() {
-    if let Some(path) = REMOVED.try_lock().ok().and_then(|path| path.clone()) {
-        // At worst, the next one removes it.
-        let _ = fs::remove_file(path);
+/// Does what else is to be done.
+fn finish() {
+    if let Ok(Some(work)) = AT_END.try_lock().as_deref() {
+        work();
     }
 }
 
@@ -179,9 +177,18 @@ fn told(aborted: &Aborted) -> String {
     }
 }
 
-/// What to do instead of exiting when memory has run out.
+/// What to do instead of exiting when memory has run out, which a text says.
 #[cfg(unix)]
-pub(crate) static AGAIN: Mutex<Option<Box<dyn FnOnce() + Send>>> = Mutex::new(None);
+static AGAIN: Mutex<Option<Again>> = Mutex::new(None);
+
+#[cfg(unix)]
+type Again = Box<dyn FnOnce(&str) + Send>;
+
+/// Does this instead of exiting when memory has run out.
+#[cfg(unix)]
+pub(crate) fn begin_again(again: Again) {
+    *AGAIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(again);
+}
 
 /// The same for another reason, which is the message, unless it is known that outputs are there.
 pub(crate) fn end(code: u8, reason: &str) -> ! {
@@ -191,9 +198,9 @@ pub(crate) fn end(code: u8, reason: &str) -> ! {
     }
     #[cfg(unix)]
     if let Some(begin) = AGAIN.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        begin();
+        begin(reason);
     }
-    remove();
+    finish();
     exit(code)
 }
 

@@ -84,10 +84,11 @@ def test_the_frames_of_a_job_are_those_of_one_process(folder, whole):
     assert run("openjd", "run", "job.yaml", cwd=folder).count("no frame is missing") == 3
 
 
-def test_tasks_without_a_server_and_with_any_frames(folder, whole):
-    farm(folder, "--no-server", "--chunks", "noncontiguous", "--frames", "1-7x2", "--frames-per-task", "2", output="job.json")
+@pytest.mark.parametrize(("chunks", "count"), [("noncontiguous", 2), ("contiguous", 4)])
+def test_tasks_without_a_server_and_with_steps(folder, whole, chunks, count):
+    farm(folder, "--no-server", "--chunks", chunks, "--frames", "1-7x2", "--frames-per-task", "2", output="job.json")
     said = run("openjd", "run", "job.json", cwd=folder)
-    assert "Server" not in said and "Chunks run: 2" in said
+    assert "Server" not in said and f"Chunks run: {count}" in said
     assert frames(folder / "frames") == {name: bytes for name, bytes in frames(whole).items() if int(name[2:4]) % 2}
 
 

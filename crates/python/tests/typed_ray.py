@@ -58,7 +58,7 @@ def render() -> None:
     assert_type(film, Report)
     part: PictureRequest = {"quality": "final", "exposure": "auto"}
     picture = lightmesh.ray.picture(
-        "a.toml", None, address=None, cpus_per_actor=1, gpus_per_actor=0, actors=None, ship=False, on_progress=follow, **part
+        "a.toml", None, address=None, cpus_per_actor=1, gpus_per_actor=0, actors=None, ship=False, resume=True, on_progress=follow, **part
     )
     assert_type(picture, Report)
     kinds: list[type[lightmesh.LightmeshError]] = [ClusterError, NodeError, FilesError]

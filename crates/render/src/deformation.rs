@@ -27,6 +27,14 @@ pub(crate) fn differs_only_in_positions(before: &Geometry, now: &Geometry) -> bo
         && a.instances.list().iter().zip(b.instances.list()).all(|(a, b)| is_same_shape(a, b))
 }
 
+/// Whether both are the same surfaces in the same places, though they may stand in memory twice.
+pub fn are_same(a: &Geometry, b: &Geometry) -> bool {
+    differs_only_in_positions(a, b)
+        && a.mesh.positions == b.mesh.positions
+        && a.mesh.normals == b.mesh.normals
+        && a.mesh.instances == b.mesh.instances
+}
+
 fn is_same_shape(a: &Instance, b: &Instance) -> bool {
     a.triangles == b.triangles && a.first == b.first && a.object == b.object
 }

@@ -72,6 +72,8 @@ pub use data::masks::Masks;
 pub use data::picture::Picture;
 pub use data::rays::RayList;
 pub use data::visibility::Visibility;
+#[doc(hidden)]
+pub use deformation::are_same;
 pub use device::{Choice, Device, DeviceList, DeviceReport, UnknownDevice, devices};
 pub use error::RenderError;
 pub use footprint::Cone;

@@ -87,13 +87,10 @@ impl Session {
         }
         let metering = staged(&plan, &mut scene, host)?;
         // What is of no use makes room.
-        let known = kept.as_mut().and_then(|kept| kept.take().filter(|kept| kept.is_for(&plan.order.request)));
-        if let Some(known) = &known {
-            scene.geometry = Arc::clone(&known.geometry);
-        }
+        let _known = kept.as_mut().and_then(|kept| kept.take().filter(|kept| kept.is_shared_with(&mut scene)));
         let prepared = host.during(BUILDING, || renderer.prepare(&scene, &plan.settings, host))?;
         if let Some(kept) = kept {
-            *kept = Some(Staged::new(&plan.order.request, &scene.geometry, &prepared));
+            *kept = Staged::of(&scene, &prepared, &plan.settings);
         }
         film::explain(&scene, plan.film.is_some(), host);
         Ok(Session { prepared: Prepared { plan: Arc::new(plan), scene: prepared, metering }, load })

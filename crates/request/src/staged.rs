@@ -1,38 +1,30 @@
 //! The surfaces of a staged scene, which stay from order to order.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lightmesh_render::PreparedScene;
-use lightmesh_scene::Geometry;
+use lightmesh_render::{Acceleration, PreparedScene, Settings, are_same};
+use lightmesh_scene::{Geometry, Scene};
 
-use crate::manifest;
-use crate::request::Request;
-
-/// The surfaces of a scene that is staged by these settings, with the structure over them.
+/// The surfaces of a scene that is staged, with the structure over them.
 pub(crate) struct Staged {
-    settings: BTreeMap<String, String>,
-    pub(crate) geometry: Arc<Geometry>,
+    geometry: Arc<Geometry>,
     /// While it is alive, the renderer has the structure.
     _prepared: PreparedScene,
 }
 
 impl Staged {
-    /// What was made of a scene by the settings of a request.
-    pub(crate) fn new(request: &Request, geometry: &Arc<Geometry>, prepared: &PreparedScene) -> Staged {
-        Staged { settings: deciding(request), geometry: Arc::clone(geometry), _prepared: prepared.clone() }
+    /// What is worth keeping of a scene that is prepared with these settings. A grid that was read from a file is not: the file may change.
+    pub(crate) fn of(scene: &Scene, prepared: &PreparedScene, settings: &Settings) -> Option<Staged> {
+        let from_file = matches!(settings.acceleration, Acceleration::GridFile(_));
+        (!from_file).then(|| Staged { geometry: Arc::clone(&scene.geometry), _prepared: prepared.clone() })
     }
 
-    /// Whether a request makes the same surfaces of the scene: with the same settings, staging adds the same ground.
-    pub(crate) fn is_for(&self, request: &Request) -> bool {
-        self.settings == deciding(request)
+    /// If a scene has the same surfaces, it shares them from now on: staging may have added the same ground again. Returns whether it does.
+    pub(crate) fn is_shared_with(&self, scene: &mut Scene) -> bool {
+        let is_same = Arc::ptr_eq(&self.geometry, &scene.geometry) || are_same(&self.geometry, &scene.geometry);
+        if is_same {
+            scene.geometry = Arc::clone(&self.geometry);
+        }
+        is_same
     }
-}
-
-/// The settings on which surfaces may depend.
-fn deciding(request: &Request) -> BTreeMap<String, String> {
-    let mut settings = manifest::settings_of(request);
-    // A saved grid knows nothing of a ground.
-    settings.insert("grid_file".to_owned(), format!("{:?}", request.grid_file));
-    settings
 }

@@ -56,9 +56,19 @@ struct Reading {
     options: LoadOptions,
 }
 
-/// A file of the scene: when it was last changed, and its size; `None` if it is not there.
+/// A file of the scene, and what changes with it; `None` if it is not there.
 #[derive(PartialEq)]
-struct Stamp(PathBuf, Option<(SystemTime, u64)>);
+struct Stamp(PathBuf, Option<Status>);
+
+/// What of a file changes when it is written or replaced.
+#[derive(PartialEq)]
+struct Status {
+    modified: SystemTime,
+    bytes: u64,
+    /// Device, number, and when it was last changed in any way, in nanoseconds: copies and archives may set the other time.
+    #[cfg(unix)]
+    place: (u64, u64, i128),
+}
 
 impl Warm {
     /// A renderer on the devices of a plan.
@@ -125,15 +135,31 @@ impl WarmScene {
 impl Stamp {
     fn of(path: &Path) -> Stamp {
         let status = fs::metadata(path).ok().filter(fs::Metadata::is_file);
-        let changed = status.and_then(|status| Some((status.modified().ok()?, status.len())));
-        Stamp(path.to_owned(), changed)
+        Stamp(path.to_owned(), status.and_then(|status| Status::of(&status)))
     }
 
     /// Whether a change since would be seen. What is there and is no file, such as a pipe, can be read once only.
     fn is_settled(&self, begin: SystemTime) -> bool {
-        match self.1 {
-            Some((changed, _)) => begin.duration_since(changed).is_ok_and(|age| age > UNSETTLED),
+        match &self.1 {
+            Some(status) => begin.duration_since(status.modified).is_ok_and(|age| age > UNSETTLED),
             None => !self.0.exists(),
         }
+    }
+}
+
+impl Status {
+    fn of(status: &fs::Metadata) -> Option<Status> {
+        #[cfg(unix)]
+        use std::os::unix::fs::MetadataExt;
+        Some(Status {
+            modified: status.modified().ok()?,
+            bytes: status.len(),
+            #[cfg(unix)]
+            place: (
+                status.dev(),
+                status.ino(),
+                i128::from(status.ctime()) * 1_000_000_000 + i128::from(status.ctime_nsec()),
+            ),
+        })
     }
 }

@@ -47,7 +47,7 @@ pub(crate) struct FarmArgs {
     pub(crate) frames_per_task: u32,
 
     /// Choose which frames a chunk may have
-    #[arg(long, value_enum, value_name = "WHICH", default_value_t = Chunks::Contiguous, help_heading = "Job")]
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t = Chunks::Noncontiguous, help_heading = "Job")]
     pub(crate) chunks: Chunks,
 
     /// Let each task read the scene itself, without a server

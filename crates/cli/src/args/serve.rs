@@ -29,7 +29,11 @@ pub(crate) struct ServeArgs {
     #[arg(long, value_name = "TIME", default_value = "15m")]
     pub(crate) idle: Budget,
 
-    /// End the server at this socket, after what it is doing
+    /// End the server at this socket, after what it is doing; if there is none, that is all
     #[arg(long)]
     pub(crate) stop: bool,
+
+    /// Go on listening at standard input, as the process did that became this one.
+    #[arg(long, hide = true)]
+    pub(crate) inherit: bool,
 }

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 /// Which frames a task of a job may render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Chunks {
-    /// Frames without gaps between them
-    Contiguous,
     /// Any frames
     Noncontiguous,
+    /// Frames without gaps between them; every second frame makes a task of its own then
+    Contiguous,
 }
 
 /// How progress is shown.

@@ -23,7 +23,7 @@ const HOURS: f64 = 0.1;
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     let job = Job::of(args);
     match &args.server {
-        Some(path) => server::render(path, &job),
+        Some(path) => server::render(path, &job).inspect_err(|error| tell_of(error, &job)),
         None => render(&job, &mut Warm::default()).map(|()| 0),
     }
 }
@@ -32,12 +32,19 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Failure> {
 pub(crate) fn render(job: &Job, warm: &mut Warm) -> Result<(), Failure> {
     let watcher = Watcher::new(job.told.progress, job.told.quiet);
     let done = work(job.clone(), warm, &watcher);
-    // A task that was cancelled has not failed.
-    done.inspect_err(|error| {
-        if error.exit_code() != INTERRUPTED {
-            watcher.failed(error);
-        }
-    })
+    done.inspect_err(|error| tell(error, &watcher))
+}
+
+/// Tells that a job has failed before there was a watcher.
+fn tell_of(error: &Failure, job: &Job) {
+    tell(error, &Watcher::new(job.told.progress, job.told.quiet));
+}
+
+/// Tells that a job has failed; one that was cancelled has not.
+fn tell(error: &Failure, watcher: &Watcher) {
+    if error.exit_code() != INTERRUPTED {
+        watcher.failed(error);
+    }
 }
 
 fn work(Job { order, told }: Job, warm: &mut Warm, watcher: &Watcher) -> Result<(), Failure> {

@@ -17,7 +17,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<(), Failure> {
     } else if args.background {
         server::start(&args.socket, args.idle.0, args.log.as_deref())
     } else {
-        server::serve(&args.socket, args.idle.0, &work)
+        server::serve(&args.socket, args.idle.0, args.inherit, &work)
     }
 }
 

@@ -41,6 +41,8 @@ pub(super) enum Asked {
 pub(super) struct Rendering {
     pub(super) folder: OsString,
     pub(super) color: When,
+    /// What new files may not be for others.
+    pub(super) umask: u32,
     pub(super) scene: OsString,
     pub(super) request: Request,
     output: Option<OsString>,
@@ -51,9 +53,11 @@ pub(super) struct Rendering {
     told: Told,
 }
 
-/// What a server says at the end.
+/// What a server says.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Answer {
+    /// Nobody else is before this client any more: it may send its standard output and error.
+    Begun,
     /// The exit code.
     Exit(u8),
     /// The server is another version.
@@ -67,12 +71,13 @@ impl Call {
 }
 
 impl Rendering {
-    pub(super) fn new(job: &Job, folder: PathBuf, color: When) -> Rendering {
+    pub(super) fn new(job: &Job, folder: PathBuf, color: When, umask: u32) -> Rendering {
         let Job { order: Order { scene, request, files }, told } = job.clone();
         let text = PathBuf::into_os_string;
         Rendering {
             folder: text(folder),
             color,
+            umask,
             scene: text(scene),
             request,
             output: files.output.map(text),

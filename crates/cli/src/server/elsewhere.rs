@@ -13,7 +13,7 @@ pub(crate) fn render(_: &Path, _: &Job) -> Result<u8, Failure> {
     Err(ServerError::System.into())
 }
 
-pub(crate) fn serve(_: &Path, _: Duration, _: &dyn Fn(&Job, &mut Warm) -> u8) -> Result<(), Failure> {
+pub(crate) fn serve(_: &Path, _: Duration, _: bool, _: &dyn Fn(&Job, &mut Warm) -> u8) -> Result<(), Failure> {
     Err(ServerError::System.into())
 }
 

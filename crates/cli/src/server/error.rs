@@ -11,7 +11,7 @@ pub(crate) enum ServerError {
     #[error("no server answers at {} ({reason}); start one with `lightmesh serve --socket {}`", path.display(), path.display())]
     None { path: PathBuf, reason: io::Error },
     /// It has ended before it answered.
-    #[error("the server at {} has ended before the image was finished; its log says why (lightmesh serve --log)", path.display())]
+    #[error("the server at {} has not finished this; what it said is above, or in its log (lightmesh serve --log)", path.display())]
     Ended { path: PathBuf },
     /// The connection to it has failed.
     #[error("the server at {} cannot be talked to ({reason}); start another one", path.display())]
@@ -24,6 +24,9 @@ pub(crate) enum ServerError {
         "a scene on standard input is read once, and does not stay on a server; name a file, or leave out --server"
     )]
     StandardInput,
+    /// What only the process itself can write.
+    #[error("{} is open in this process alone, and a server cannot write to it; name a file, or leave out --server", path.display())]
+    Descriptor { path: PathBuf },
     /// Another server listens.
     #[error("another server answers at {}; end it (--stop), or choose another socket", path.display())]
     Taken { path: PathBuf },
@@ -50,7 +53,11 @@ impl ServerError {
     pub(crate) fn is_of_usage(&self) -> bool {
         matches!(
             self,
-            ServerError::StandardInput | ServerError::Taken { .. } | ServerError::NoSocket { .. } | ServerError::System
+            ServerError::StandardInput
+                | ServerError::Descriptor { .. }
+                | ServerError::Taken { .. }
+                | ServerError::NoSocket { .. }
+                | ServerError::System
         )
     }
 }

@@ -2,16 +2,17 @@
 
 use std::io::{self, Read};
 use std::net::Shutdown;
-use std::os::fd::OwnedFd;
+use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
-use std::path::{Path, absolute};
-use std::sync::PoisonError;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use std::{env, thread};
 
 use lightmesh::request::Warm;
+use rustix::fs::Mode;
+use rustix::process::umask;
 
 use super::call::{Answer, Asked, Call, Form, Rendering, VERSION};
 use super::socket::{STREAMS, Socket, receive, send};
@@ -19,6 +20,9 @@ use super::{ServerError, client, streams};
 use crate::failure::{Failure, INTERRUPTED};
 use crate::job::Job;
 use crate::{color, interrupt, memory, output};
+
+/// How long a client may take to say what it wants: others wait.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// What is done with a connection.
 enum Done {
@@ -34,20 +38,27 @@ enum Done {
 type Work = dyn Fn(&Job, &mut Warm) -> u8;
 
 /// Answers calls at a socket until it shall end, or there was none for so long. Jobs are done by `work`.
-pub(crate) fn serve(path: &Path, idle: Duration, work: &Work) -> Result<(), Failure> {
-    let socket = Socket::listen(path)?;
-    let mut again = client::server(&absolute(path).unwrap_or_else(|_| path.to_owned()), idle);
-    *interrupt::AGAIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(move || {
+pub(crate) fn serve(path: &Path, idle: Duration, inherits: bool, work: &Work) -> Result<(), Failure> {
+    let wrong = |reason| ServerError::Listen { path: path.to_owned(), reason };
+    let socket = match inherits {
+        true => Socket::inherit(path, io::stdin().as_fd().try_clone_to_owned().map_err(wrong)?),
+        false => Socket::listen(path)?,
+    };
+    let mut again = client::server(path, idle);
+    // Those who wait stay connected.
+    again.arg("--inherit").stdin(socket.listener().map_err(wrong)?);
+    interrupt::begin_again(Box::new(move |reason| {
         streams::bring_back();
+        // Standard error itself belongs to the last message.
+        let _ = rustix::io::write(io::stderr().as_fd(), format!("{reason}; begins again\n").as_bytes());
         // If that fails, the process ends.
         let _ = again.exec();
     }));
     output::complain(&format!("serving at {}", path.display()));
     let mut warm = Warm::default();
     loop {
-        let wrong = |reason| ServerError::Listen { path: path.to_owned(), reason };
         let Some(stream) = socket.next(idle).map_err(wrong)? else {
-            output::complain(&format!("ends, since nothing was asked for in {} s (--idle)", idle.as_secs()));
+            output::complain(&format!("ends, since nothing was asked for in {} s (--idle)", idle.as_secs_f64()));
             return Ok(());
         };
         match answer(&stream, work, &mut warm) {
@@ -65,7 +76,8 @@ pub(crate) fn serve(path: &Path, idle: Duration, work: &Work) -> Result<(), Fail
 }
 
 fn answer(stream: &UnixStream, work: &Work, warm: &mut Warm) -> io::Result<Done> {
-    let (line, descriptors) = receive(stream)?;
+    stream.set_read_timeout(Some(PATIENCE))?;
+    let (line, _) = receive(stream)?;
     if line.is_empty() {
         return Ok(Done::Nothing);
     }
@@ -75,6 +87,9 @@ fn answer(stream: &UnixStream, work: &Work, warm: &mut Warm) -> io::Result<Done>
         return Ok(Done::Answered(format!("a client of version {version} was refused")));
     }
     let Call { asked: Asked::Render(rendering), .. } = serde_json::from_slice(&line)? else { return Ok(Done::Stop) };
+    reply(stream, &Answer::Begun)?;
+    let (_, descriptors) = receive(stream)?;
+    stream.set_read_timeout(None)?;
     let descriptors = <[OwnedFd; STREAMS]>::try_from(descriptors)
         .map_err(|_| io::Error::other("it came without standard output and error"))?;
     let (begin, what) = (Instant::now(), described(&rendering));
@@ -104,10 +119,11 @@ fn done(
     descriptors: [OwnedFd; STREAMS],
     work: impl FnOnce(&Job) -> u8,
 ) -> io::Result<u8> {
+    let own_folder = env::current_dir();
     env::set_current_dir(&rendering.folder)?;
     interrupt::clear();
     let replaced = streams::replace(descriptors)?;
-    let usual = color::when();
+    let usual = (color::when(), umask(Mode::from_raw_mode(rendering.umask)));
     color::set(rendering.color);
     let job = rendering.into_job();
     memory::limit(Some(job.order.request.memory_limit));
@@ -134,8 +150,11 @@ fn done(
         }
         None => code,
     };
-    color::set(usual);
+    color::set(usual.0);
+    umask(usual.1);
     drop(replaced);
     interrupt::clear();
+    // Who removes or unmounts the client's folder is not in the way of this process.
+    let _ = own_folder.and_then(env::set_current_dir);
     Ok(code)
 }

@@ -3,9 +3,9 @@
 use std::fs;
 use std::io::{self, ErrorKind, IoSlice, IoSliceMut, Read, Write};
 use std::mem::MaybeUninit;
-use std::os::fd::{BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::FileTypeExt;
+use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf, absolute};
 use std::time::Duration;
@@ -31,11 +31,38 @@ pub(super) const STREAMS: usize = 2;
 
 /// A socket that somebody listens at. Its file ends with it, also if the process ends early.
 pub(super) struct Socket {
-    path: PathBuf,
+    file: OwnFile,
     listener: UnixListener,
 }
 
+/// The file of a socket, which ends with it unless another one has taken its name.
+#[derive(Clone)]
+struct OwnFile {
+    path: PathBuf,
+    /// Device and number.
+    identity: Option<(u64, u64)>,
+}
+
+impl OwnFile {
+    fn at(path: PathBuf) -> OwnFile {
+        let identity = fs::symlink_metadata(&path).ok().map(|status| (status.dev(), status.ino()));
+        OwnFile { path, identity }
+    }
+
+    fn remove(&self) {
+        if self.identity.is_some() && OwnFile::at(self.path.clone()).identity == self.identity {
+            // At worst, the next server removes it.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
 impl Socket {
+    /// Goes on listening for a process that has become this one.
+    pub(super) fn inherit(path: &Path, listener: OwnedFd) -> Socket {
+        Socket::of(path.to_owned(), listener.into())
+    }
+
     /// Listens at `path`, in place of a server that has died.
     pub(super) fn listen(path: &Path) -> Result<Socket, ServerError> {
         let path = absolute(path).unwrap_or_else(|_| path.to_owned());
@@ -54,8 +81,19 @@ impl Socket {
         let listener = in_reach(&path, |path| UnixListener::bind(path));
         umask(usual);
         let listener = listener.map_err(wrong)?;
-        interrupt::remove_at_end(Some(path.clone()));
-        Ok(Socket { path, listener })
+        Ok(Socket::of(path, listener))
+    }
+
+    fn of(path: PathBuf, listener: UnixListener) -> Socket {
+        let file = OwnFile::at(path);
+        let removed = file.clone();
+        interrupt::at_end(Some(Box::new(move || removed.remove())));
+        Socket { file, listener }
+    }
+
+    /// Where it listens, for a process that goes on.
+    pub(super) fn listener(&self) -> io::Result<OwnedFd> {
+        self.listener.as_fd().try_clone_to_owned()
     }
 
     /// The next client; `None` if there is none for so long.
@@ -80,9 +118,8 @@ impl Socket {
 
 impl Drop for Socket {
     fn drop(&mut self) {
-        interrupt::remove_at_end(None);
-        // At worst, the next server removes it.
-        let _ = fs::remove_file(&self.path);
+        interrupt::at_end(None);
+        self.file.remove();
     }
 }
 

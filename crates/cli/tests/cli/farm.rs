@@ -59,10 +59,14 @@ fn what_people_change_is_a_parameter_and_the_rest_an_argument() {
     assert!(arguments.contains(&"--resume") && arguments.contains(&"--exposure=-1"), "{arguments:?}");
     let needed = &job["steps"][0]["hostRequirements"]["amounts"];
     assert_eq!(needed, &json!([{"name": "amount.worker.gpu", "min": 2}, {"name": "amount.worker.vcpu", "min": 4}]));
-    let alone = self::job(&place, &["--no-server", "--chunks", "noncontiguous"]);
+    let constraint = |job: &Value| {
+        let parameters = &job["steps"][0]["parameterSpace"]["taskParameterDefinitions"];
+        parameters[0]["chunks"]["rangeConstraint"].clone()
+    };
+    assert_eq!(constraint(&job), "NONCONTIGUOUS");
+    let alone = self::job(&place, &["--no-server", "--chunks", "contiguous"]);
     assert!(alone["steps"][0].get("stepEnvironments").is_none() && !self::arguments(&alone).contains(&"--server"));
-    let chunks = &alone["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0]["chunks"];
-    assert_eq!(chunks["rangeConstraint"], "NONCONTIGUOUS");
+    assert_eq!(constraint(&alone), "CONTIGUOUS");
 }
 
 #[test]
@@ -114,8 +118,9 @@ fn jobs_that_no_farm_can_render_are_refused() {
     for (flags, sentence) in [
         (&["--frames-to", "f.#.png", "-o", "job.txt"][..], "-o job.txt: a job is a .yaml or a .json file"),
         (&["--frames-to", "f.mp4", "-o", "job.yaml"], "--frames-to f.mp4: tasks write frames"),
-        (&["--frames-to", "f.png", "-o", "job.yaml"], "write #### where the number goes"),
-        (&["--frames-to", "f{{.#.png", "-o", "job.yaml"], "begins a reference in a job template"),
+        (&["--frames-to", "f.png", "-o", "job.yaml"], "--frames-to f.png: each frame needs a name of its own"),
+        (&["--frames-to", "f{{.#.png", "-o", "job.yaml"], "`f{{.#.png` contains {{ or }}"),
+        (&["--frames-to", "f}}.#.png", "-o", "job.yaml"], "`f}}.#.png` contains {{ or }}"),
         (&["--frames-to", "-", "-o", "job.yaml"], "--frames-to -: tasks of a farm write files"),
     ] {
         let message = place.refused(&[&film[..], flags].concat());

@@ -105,6 +105,74 @@ fn a_scene_stays_until_a_file_of_it_changes() {
 }
 
 #[test]
+fn a_file_that_is_replaced_is_read_again_whatever_its_time() {
+    let place = Place::new();
+    let server = Server::begin(&place);
+    server.made(&[]);
+    let first = place.read("a.exr");
+    // As copies and archives leave it: as long, and with the time of the other one.
+    let time = place.path("room.toml").metadata().unwrap().modified().unwrap();
+    let lower = String::from_utf8(place.read("room.toml")).unwrap().replace("center = [0, 1, 0]", "center = [0, 0, 0]");
+    place.write("other.toml", &lower);
+    File::options().write(true).open(place.path("other.toml")).unwrap().set_modified(time).unwrap();
+    std::fs::rename(place.path("other.toml"), place.path("room.toml")).unwrap();
+    server.made(&[]);
+    assert!(place.read("a.exr") != first);
+}
+
+#[test]
+fn a_ground_of_the_same_kind_is_the_same_ground() {
+    let place = Place::new();
+    let server = Server::begin(&place);
+    let made = |flags: &[&str]| server.made(&[&["--ground"], flags].concat())[1];
+    let size = |flags: &[&str]| {
+        let done = server.run(&[&["-o", "b.png", "-q", "--ground", "--stats", "b.json"], flags].concat());
+        assert_eq!(done.code, Some(0), "{done:?}");
+        place.json("b.json")["seconds"]["build"].as_f64().unwrap()
+    };
+    assert!(made(&[]) > 0.0);
+    assert_eq!([size(&["--size", "20x20"]), size(&["--seed", "3"]), made(&["--exposure", "1"])], [0.0; 3]);
+}
+
+#[test]
+fn who_waits_may_leave_and_what_cannot_be_said_together_is_refused_at_once() {
+    let place = Place::new();
+    let server = Server::begin(&place);
+    let mut busy = server.command(&["-o", "a.png", "--size", "4000x4000", "--quality", "final", "--progress", "json"]);
+    let mut busy = busy.stderr(Stdio::piped()).spawn().unwrap();
+    let mut told = await_progress(&mut busy);
+    let waiting = server.command(&["-o", "b.png", "--size", "16x12"]).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(200));
+    let signal = |signal: &str, id: u32| std::process::Command::new("kill").args([signal, &id.to_string()]).status();
+    assert!(signal("-TERM", waiting.id()).unwrap().success());
+    let done: Done = waiting.wait_with_output().unwrap().into();
+    assert!(done.code == Some(143) && done.stderr == "interrupted: nothing was written\n", "{done:?}");
+    // The other one is still at work.
+    assert!(busy.try_wait().unwrap().is_none());
+    assert!(signal("-TERM", busy.id()).unwrap().success());
+    told.by_ref().for_each(drop);
+    assert_eq!(busy.wait().unwrap().code(), Some(143));
+    let done = server.run(&["-o", "a.png", "--step", "0.5", "--mode", "area"]);
+    assert!(done.code == Some(2) && done.stderr.contains("--step"), "{done:?}");
+    let done = server.run(&["-o", "/dev/fd/9"]);
+    assert!(done.code == Some(2) && done.stderr.contains("is open in this process alone"), "{done:?}");
+    assert!(
+        place.refused(&["serve", "--socket", "s.sock", "--background", "--log", "other"]).contains("another server")
+    );
+    place.good(&["serve", "--socket", "none.sock", "--stop"]);
+}
+
+#[test]
+fn a_server_that_ends_leaves_the_socket_of_the_next_one() {
+    let place = Place::new();
+    place.good(&["serve", "--socket", "s.sock", "--background", "--idle", "1s"]);
+    std::fs::remove_file(place.path("s.sock")).unwrap();
+    let server = Server::begin(&place);
+    std::thread::sleep(Duration::from_millis(1500));
+    server.good(&["-o", "a.png", "--size", "16x12", "-q"]);
+}
+
+#[test]
 fn what_is_cancelled_or_too_large_does_not_end_the_server() {
     let place = Place::new();
     let server = Server::begin(&place);

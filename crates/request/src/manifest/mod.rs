@@ -33,7 +33,6 @@ use crate::error::ManifestError;
 use crate::files::json;
 use crate::order::Order;
 pub(crate) use record::{Manifest, records_of};
-pub(crate) use settings::of as settings_of;
 
 /// The name of the file.
 const NAME: &str = "manifest.json";

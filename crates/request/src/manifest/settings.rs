@@ -12,7 +12,7 @@ use crate::words::Name;
 const NONE: &str = "not given";
 
 /// Their values by name, as they are typed.
-pub(crate) fn of(request: &Request) -> BTreeMap<String, String> {
+pub(super) fn of(request: &Request) -> BTreeMap<String, String> {
     let decisive = FIELDS.iter().filter(|field| field.decides_bytes);
     decisive
         .map(|field| {

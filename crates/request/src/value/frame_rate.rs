@@ -86,6 +86,10 @@ fn whole(text: &str) -> Option<u64> {
 
 /// A decimal as a ratio.
 fn decimal(text: &str) -> Option<(u64, u64)> {
+    if text.contains(['e', 'E']) {
+        // Shown without an exponent.
+        return decimal(&text.parse::<f64>().ok()?.to_string());
+    }
     let Some((units, parts)) = text.split_once('.') else { return whole(text).map(|frames| (frames, 1)) };
     let seconds = 10_u64.pow(u32::try_from(parts.len()).ok().filter(|&digits| digits as usize <= DIGITS)?);
     Some((whole(units)? * seconds + whole(parts)?, seconds))
@@ -97,9 +101,15 @@ mod tests {
 
     #[test]
     fn rates_are_decimals_or_ratios() {
-        for (text, shown) in
-            [("24", "24"), ("23.976", "2997/125"), ("30000/1001", "30000/1001"), ("50/2", "25"), ("12.50", "25/2")]
-        {
+        for (text, shown) in [
+            ("24", "24"),
+            ("23.976", "2997/125"),
+            ("30000/1001", "30000/1001"),
+            ("50/2", "25"),
+            ("12.50", "25/2"),
+            ("2.4E+1", "24"),
+            ("5e-1", "1/2"),
+        ] {
             let rate: FrameRate = text.parse().unwrap();
             assert_eq!((rate.to_string().as_str(), shown.parse()), (shown, Ok(rate)), "{text}");
         }
@@ -108,7 +118,8 @@ mod tests {
 
     #[test]
     fn what_is_no_rate_is_refused() {
-        for text in ["", "0", "0/1", "1/0", "1001", "1000.1", "-24", "+24", "24.", ".5", "1e2", "24/", "a", "nan"] {
+        for text in ["", "0", "0/1", "1/0", "1001", "1000.1", "-24", "+24", "24.", ".5", "1e4", "1e", "24/", "a", "nan"]
+        {
             assert!(text.parse::<FrameRate>().is_err(), "{text}");
         }
         let message = "2000".parse::<FrameRate>().unwrap_err().to_string();

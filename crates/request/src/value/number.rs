@@ -23,11 +23,17 @@ pub(super) fn not_negative(what: &'static str, text: &str) -> Result<f64, ValueE
     Err(ValueError::OutOfRange { what, text: text.trim().to_owned(), range: "0 or more" })
 }
 
-/// The leading digits and points of a text, and the unit after them.
+/// The leading number of a text, digits and points and perhaps an exponent, and the unit after it.
 pub fn number_and_unit(text: &str) -> (&str, &str) {
     let text = text.trim();
-    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
-    let (number, unit) = text.split_at(digits);
+    let digits = |from: usize| {
+        let end = text[from..].find(|c: char| !c.is_ascii_digit() && c != '.');
+        end.map_or(text.len(), |end| from + end)
+    };
+    let mantissa = digits(0);
+    let sign = text[mantissa..].strip_prefix(['e', 'E']).map(|rest| rest.starts_with(['+', '-']));
+    let exponent = sign.map(|has_sign| mantissa + 1 + usize::from(has_sign)).filter(|&from| digits(from) > from);
+    let (number, unit) = text.split_at(exponent.map_or(mantissa, digits));
     (number, unit.trim())
 }
 

@@ -12,13 +12,13 @@ mod template;
 
 use std::ffi::OsStr;
 use std::fs;
-use std::path::{Path, PathBuf, absolute};
+use std::path::{Component, Path, PathBuf, absolute};
 
 use lightmesh::Device;
 use lightmesh::request::files::is_standard;
 use lightmesh::request::film::Container;
 use lightmesh::request::table::Kind;
-use lightmesh::request::value::Frames;
+use lightmesh::request::value::{Frames, numbered};
 use lightmesh::request::{FIELDS, Field, Name, Order, Plan, Request, RequestError, Words, field};
 use lightmesh_files::directory;
 
@@ -40,6 +40,8 @@ const PROGRAM: &str = "{{Param.Program}}";
 const SOCKET: &str = "{{Session.WorkingDirectory}}/lightmesh.sock";
 /// Where the server of a session says what it does.
 const LOG: &str = "{{Session.WorkingDirectory}}/lightmesh-server.log";
+/// How long a session may have no task before its server ends: one that is killed leaves it behind.
+const IDLE: &str = "1h";
 /// Seconds in which a task that is cancelled ends by itself.
 const NOTICE: u32 = 30;
 /// Seconds that a server may take to begin or to end.
@@ -101,6 +103,9 @@ fn check(order: &Order) -> Result<(), FarmError> {
     let picture = order.files.output.as_deref().unwrap_or(Path::new(""));
     if Container::from_path(picture).is_some() {
         return Err(FarmError::Movie(picture.to_owned()));
+    }
+    if !is_standard(picture) && numbered(picture, 1).is_none() {
+        return Err(FarmError::NoNumber(picture.to_owned()));
     }
     if is_standard(&order.scene) {
         return Err(FarmError::StandardInput);
@@ -342,14 +347,12 @@ impl<'a> Job<'a> {
         let (job, count) = (self.args.output.display(), frames.numbers().count());
         let mut text = format!("{job}: {count} frames, {} in a task", self.args.frames_per_task);
         if !is_standard(&self.args.output) {
-            text += &format!("; `openjd run {job}` renders them here");
+            let given = self.missing.iter().map(|(name, path)| format!(" -p {name}={}", quoted(path)));
+            let given: String = given.collect();
+            text += &format!("; `openjd run {}{given}` renders them here", quoted(&self.args.output));
         }
         if !self.missing.is_empty() {
-            let given = self.missing.iter().map(|(name, path)| format!(" -p {name}={}", path.display()));
-            text += &format!(
-                "; what is not in the folder of the job is given when it is submitted, as in{}",
-                given.collect::<String>()
-            );
+            text += "; what is not in the job's folder is given when it is submitted";
         }
         text
     }
@@ -363,8 +366,10 @@ fn server() -> Environment {
         timeout: Some(PATIENCE),
         cancelation: None,
     };
-    let actions =
-        EnvironmentActions { on_enter: action(&["--background", "--log", LOG]), on_exit: action(&["--stop"]) };
+    let actions = EnvironmentActions {
+        on_enter: action(&["--background", "--idle", IDLE, "--log", LOG]),
+        on_exit: action(&["--stop"]),
+    };
     Environment { name: "Server", script: Script { actions } }
 }
 
@@ -395,15 +400,22 @@ fn folder_of(output: &Path) -> &Path {
     if is_standard(output) { Path::new(".") } else { directory(output) }
 }
 
-/// A path from `folder` on, if it lies in it.
+/// A path from `folder` on, if it lies in it: by the names, in which links stay what they are, or by where they lead.
 fn within(path: &Path, folder: &Path) -> Option<PathBuf> {
-    let real = |path: &Path| fs::canonicalize(path).ok();
-    let inside = match path.file_name() {
-        // What is a link stays one.
-        Some(name) if !path.is_dir() => real(directory(path))?.join(name).strip_prefix(real(folder)?).ok()?.to_owned(),
-        _ => real(path)?.strip_prefix(real(folder)?).ok()?.to_owned(),
+    let named = || {
+        let inside = absolute(path).ok()?.strip_prefix(absolute(folder).ok()?).ok()?.to_owned();
+        inside.components().all(|part| matches!(part, Component::Normal(_))).then_some(inside)
     };
+    let real = || Some(fs::canonicalize(path).ok()?.strip_prefix(fs::canonicalize(folder).ok()?).ok()?.to_owned());
+    let inside = named().or_else(real)?;
     Some(if inside.as_os_str().is_empty() { PathBuf::from(".") } else { inside })
+}
+
+/// A path as shells read it.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |character: char| character.is_ascii_alphanumeric() || "_-./:@%+=,".contains(character);
+    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }
 
 fn text(path: &Path) -> Result<String, FarmError> {
@@ -412,5 +424,9 @@ fn text(path: &Path) -> Result<String, FarmError> {
 
 /// Text that means itself in a template.
 fn literal(text: &str) -> Result<String, FarmError> {
-    if text.contains("{{") { Err(FarmError::Reference(text.to_owned())) } else { Ok(text.to_owned()) }
+    if text.contains("{{") || text.contains("}}") {
+        Err(FarmError::Reference(text.to_owned()))
+    } else {
+        Ok(text.to_owned())
+    }
 }
