@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) enum Chunks {
     /// Any frames
     Noncontiguous,
-    /// Frames without gaps between them; every second frame makes a task of its own then
+    /// Frames without gaps between them: every second one is a task of its own
     Contiguous,
 }
 
@@ -21,7 +21,7 @@ pub(crate) enum Progress {
     Bar,
     /// One JSON object per line
     Json,
-    /// Lines for runners of Open Job Description: the part that is done, and which frame was finished last
+    /// Lines for Open Job Description: the part that is done, frames, failures
     Openjd,
     /// Nothing
     None,
