@@ -7,6 +7,7 @@ use std::io::{self, ErrorKind, Read};
 use std::net::Shutdown;
 use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf, absolute};
 use std::process::{Child, Command, Stdio};
 use std::thread;
@@ -172,24 +173,54 @@ pub(crate) fn start(path: &Path, idle: Duration, log: Option<&Path>) -> Result<(
     Ok(wait_for(&mut server, path, log)?)
 }
 
-/// The command of a server. The program is called as this one was: it may be a script of another one.
+/// The command of a server.
 pub(super) fn server(path: &Path, idle: Duration) -> Command {
     let mut arguments = env::args_os();
-    let program = PathBuf::from(arguments.next().unwrap_or_else(|| "lightmesh".into()));
-    // The folder may be another one by the time that it is started. One without a folder is looked for in those of `PATH`.
-    let anywhere = |path: &Path| absolute(path).unwrap_or_else(|_| path.to_owned());
-    let program = if program.components().count() > 1 { anywhere(&program) } else { program };
+    let called = arguments.next().unwrap_or_else(|| "lightmesh".into());
     let mut socket = OsString::from("--socket=");
     socket.push(anywhere(path));
-    let mut command = Command::new(program);
-    command.args(arguments.take_while(|argument| argument != "serve"));
+    let mut command = Command::new(program(Path::new(&called)));
+    command.arg0(called).args(arguments.take_while(|argument| argument != "serve"));
     command.arg("serve").arg(socket).arg("--idle").arg(idle.as_secs_f64().to_string());
     command
 }
 
+/// This program, which was `called` so. A script's program is its interpreter as it was called: by this name it knows its packages.
+fn program(called: &Path) -> PathBuf {
+    let own = env::current_exe().unwrap_or_else(|_| called.to_owned());
+    let is_interpreter = own.file_name().is_some_and(|name| name.to_string_lossy().starts_with("py"));
+    match is_interpreter {
+        // One without a folder is looked for in those of `PATH`.
+        true if called.components().count() > 1 => anywhere(called),
+        true => called.to_owned(),
+        // The file itself, also if it was moved since.
+        false if cfg!(target_os = "linux") => PathBuf::from("/proc/self/exe"),
+        false => own,
+    }
+}
+
+/// A path that holds in any folder.
+fn anywhere(path: &Path) -> PathBuf {
+    absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Whether a connection leads to a process, as far as the system tells. Another server may have been quicker.
+fn leads_to(stream: &UnixStream, server: &Child) -> bool {
+    #[cfg(target_os = "linux")]
+    {
+        let process = rustix::net::sockopt::socket_peercred(stream).map(|peer| peer.pid.as_raw_nonzero().get());
+        process.is_ok_and(|process| process.unsigned_abs() == server.id())
+    }
+    #[cfg(not(target_os = "linux"))]
+    {
+        let _ = (stream, server);
+        true
+    }
+}
+
 /// Waits until a server listens, or has ended.
 fn wait_for(server: &mut Child, path: &Path, log: Option<&Path>) -> Result<(), ServerError> {
-    while connect(path).is_err() {
+    while !connect(path).is_ok_and(|stream| leads_to(&stream, server)) {
         if let Some(status) = server.try_wait().map_err(ServerError::Start)? {
             let said = log.and_then(|log| fs::read(log).ok()).unwrap_or_default();
             let said = String::from_utf8_lossy(&said[said.len().saturating_sub(QUOTED)..]).trim().to_owned();

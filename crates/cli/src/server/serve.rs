@@ -5,7 +5,7 @@ use std::net::Shutdown;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use std::{env, thread};
@@ -45,20 +45,26 @@ pub(crate) fn serve(path: &Path, idle: Duration, inherits: bool, work: &Work) ->
         false => Socket::listen(path)?,
     };
     let mut again = client::server(path, idle);
+    // Whatever folder a client works in.
+    again.current_dir(env::current_dir().unwrap_or_else(|_| PathBuf::from("/")));
     // Those who wait stay connected.
     again.arg("--inherit").stdin(socket.listener().map_err(wrong)?);
     interrupt::begin_again(Box::new(move |reason| {
         streams::bring_back();
         // Standard error itself belongs to the last message.
-        let _ = rustix::io::write(io::stderr().as_fd(), format!("{reason}; begins again\n").as_bytes());
-        // If that fails, the process ends.
-        let _ = again.exec();
+        let say = |text: String| rustix::io::write(io::stderr().as_fd(), text.as_bytes());
+        let _ = say(format!("{reason}; begins again\n"));
+        let error = again.exec();
+        let _ = say(format!("error: the server cannot begin again ({error}) and ends\n"));
     }));
     output::complain(&format!("serving at {}", path.display()));
     let mut warm = Warm::default();
     loop {
         let Some(stream) = socket.next(idle).map_err(wrong)? else {
-            output::complain(&format!("ends, since nothing was asked for in {} s (--idle)", idle.as_secs_f64()));
+            output::complain(&match socket.is_there() {
+                true => format!("ends, since nothing was asked for in {} s (--idle)", idle.as_secs_f64()),
+                false => "ends, since its socket was removed".to_owned(),
+            });
             return Ok(());
         };
         match answer(&stream, work, &mut warm) {

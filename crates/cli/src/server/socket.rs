@@ -8,7 +8,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf, absolute};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use lightmesh_files::directory;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -24,6 +24,8 @@ use crate::interrupt;
 
 /// Longer names of sockets are not taken by every system (108 bytes on Linux, 104 elsewhere): what is beyond is reached from its own folder.
 const LONGEST: usize = 100;
+/// How often a server looks whether its socket is still there.
+const LOOK: Duration = Duration::from_secs(5);
 /// A line has so many bytes at most.
 const MOST: usize = 16 << 20;
 /// Descriptors that go with a call: standard output and error.
@@ -49,8 +51,12 @@ impl OwnFile {
         OwnFile { path, identity }
     }
 
+    fn is_there(&self) -> bool {
+        self.identity.is_some() && OwnFile::at(self.path.clone()).identity == self.identity
+    }
+
     fn remove(&self) {
-        if self.identity.is_some() && OwnFile::at(self.path.clone()).identity == self.identity {
+        if self.is_there() {
             // At worst, the next server removes it.
             let _ = fs::remove_file(&self.path);
         }
@@ -96,12 +102,18 @@ impl Socket {
         self.listener.as_fd().try_clone_to_owned()
     }
 
-    /// The next client; `None` if there is none for so long.
+    /// Whether others still find it.
+    pub(super) fn is_there(&self) -> bool {
+        self.file.is_there()
+    }
+
+    /// The next client; `None` if there is none for so long, or nobody finds the socket any more.
     pub(super) fn next(&self, idle: Duration) -> io::Result<Option<UnixStream>> {
-        let idle = Timespec::try_from(idle).map_err(io::Error::other)?;
+        let (begin, look) = (Instant::now(), Timespec::try_from(idle.min(LOOK)).map_err(io::Error::other)?);
         loop {
-            match poll(&mut [PollFd::new(&self.listener, PollFlags::IN)], Some(&idle)) {
-                Ok(0) => return Ok(None),
+            match poll(&mut [PollFd::new(&self.listener, PollFlags::IN)], Some(&look)) {
+                Ok(0) if begin.elapsed() >= idle || !self.is_there() => return Ok(None),
+                Ok(0) => continue,
                 Ok(_) => {}
                 Err(rustix::io::Errno::INTR) => continue,
                 Err(error) => return Err(error.into()),

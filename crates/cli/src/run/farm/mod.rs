@@ -391,7 +391,7 @@ fn openjd(frames: &Frames) -> String {
 /// The name of a job: that of its scene.
 fn name_of(scene: &Path) -> String {
     let stem = scene.file_stem().unwrap_or(scene.as_os_str()).to_string_lossy();
-    let plain = stem.chars().filter(|&character| !character.is_control() && character != '{');
+    let plain = stem.chars().filter(|&character| !character.is_control() && !"{}".contains(character));
     format!("Lightmesh: {}", plain.take(NAME).collect::<String>())
 }
 
