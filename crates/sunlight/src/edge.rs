@@ -59,8 +59,16 @@ pub(crate) fn positive(path: &SunPath, m: DVec3, of_interest: (f64, f64)) -> Spa
 
 /// The time of an angle that is nearest to the middle of the path.
 fn in_day(path: &SunPath, angle: f64) -> f64 {
-    let (time, middle) = (angle / RATE + path.noon, 0.5 * (path.hull.0 + path.hull.1));
-    time - DAY * ((time - middle) / DAY).round()
+    let time = angle / RATE + path.noon;
+    let off = time - 0.5 * (path.hull.0 + path.hull.1);
+    // Angles are sums of two, each of half a turn at most.
+    if off > 0.5 * DAY {
+        time - DAY
+    } else if off < -0.5 * DAY {
+        time + DAY
+    } else {
+        time
+    }
 }
 
 /// From the rising to the falling root, within the path.
@@ -82,8 +90,7 @@ fn between(rising: f64, falling: f64, (begin, end): (f64, f64)) -> Spans {
 fn newton(path: &SunPath, m: DVec3, start: f64, rises: bool) -> Option<f64> {
     let mut time = start;
     for step in 0..STEPS {
-        let (direction, change) = path.at(time);
-        let (value, slope) = (m.dot(direction), m.dot(change));
+        let (value, slope) = path.side(m, time);
         if (slope > 0.0) != rises {
             return None;
         }

@@ -45,9 +45,9 @@ impl Facet {
         let bend = if half < 1.0 { 0.55 * half * half + 1e-12 } else { 3.0 };
         let (first, last) = (path.at(limits.0).0, path.at(limits.1).0);
         let mut is_inside = [false; 3];
-        for edge in 0..3 {
-            let m = side * corners[edge].cross(corners[(edge + 1) % 3]);
-            let (low, high) = (m.dot(first), m.dot(last));
+        let normals = [0, 1, 2].map(|edge| corners[edge].cross(corners[(edge + 1) % 3]));
+        for (edge, m) in normals.into_iter().enumerate() {
+            let (low, high) = (side * m.dot(first), side * m.dot(last));
             let bend = bend * m.length();
             if low.max(high) < -bend {
                 return Spans::default();
@@ -57,9 +57,9 @@ impl Facet {
         // 2. The roots of the others.
         let mut hidden = Spans::one(limits.0, limits.1);
         for edge in (0..3).filter(|&edge| !is_inside[edge]) {
-            let ends = [corners[edge], corners[(edge + 1) % 3]];
-            let [from, to] = if self.is_turned[edge] { [ends[1], ends[0]] } else { ends };
-            let on_side = positive(path, from.cross(to), limits);
+            // The product of the ends in the other order, to the bit.
+            let m = if self.is_turned[edge] { -normals[edge] } else { normals[edge] };
+            let on_side = positive(path, m, limits);
             let is_other = self.is_turned[edge] != (side < 0.0);
             let within = if is_other { on_side.complement(path.hull.0, path.hull.1) } else { on_side };
             hidden = hidden.and(&within);

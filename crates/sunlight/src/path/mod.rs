@@ -125,6 +125,21 @@ impl SunPath {
         (direction, (dp + along * (2.0 * square + along * (3.0 * cubic))) * (1.0 / STEP))
     }
 
+    /// m·s at a time, and its change in a second: the same polynomial for one number instead of three.
+    #[inline]
+    pub(crate) fn side(&self, m: DVec3, time: f64) -> (f64, f64) {
+        let place = (time - self.begin) * (1.0 / STEP);
+        let index = (place.max(0.0) as usize).min(self.points.len() - 2);
+        let along = place - index as f64;
+        let [p, dp] = self.points[index].map(|part| m.dot(part));
+        let [q, dq] = self.points[index + 1].map(|part| m.dot(part));
+        let rise = q - p;
+        let cubic = dp + dq - 2.0 * rise;
+        let square = rise - dp - cubic;
+        let value = p + along * (dp + along * (square + along * cubic));
+        (value, (dp + along * (2.0 * square + along * (3.0 * cubic))) * (1.0 / STEP))
+    }
+
     /// From the scene's axes to those of the equator: to the meridian, to the pole, to the west. They are the same on all days of a place.
     pub fn axes(&self) -> DMat3 {
         self.axes

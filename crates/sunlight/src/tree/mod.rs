@@ -101,15 +101,12 @@ impl Tree {
             }
             let node = &self.nodes[child as usize];
             near.clear();
-            for lane in 0..WIDTH {
-                if node.child[lane] == NONE {
-                    break;
-                }
-                let low = [0, 1, 2].map(|axis| node.low[axis][lane] - point[axis] - slack);
-                let high = [0, 1, 2].map(|axis| node.high[axis][lane] - point[axis] + slack);
-                let Some((times, distance)) = hours.times(low, high) else { continue };
+            let around = hours.around(node, point, slack);
+            for lane in (0..WIDTH).take_while(|&lane| node.child[lane] != NONE) {
+                let Some(times) = hours.times(&around, lane) else { continue };
                 if open.touches(&times, node.object[lane]) {
-                    near.push((distance, Entry { child: node.child[lane], object: node.object[lane], times }));
+                    let entry = Entry { child: node.child[lane], object: node.object[lane], times };
+                    near.push((around.distance[lane], entry));
                 }
             }
             near.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
