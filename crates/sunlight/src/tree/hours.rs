@@ -96,11 +96,10 @@ impl HourTable {
     #[inline(always)]
     pub(super) fn around(&self, node: &Node, point: [f32; 3], slack: f32) -> Around {
         let mut around = Around { low: node.low, high: node.high, ..Around::default() };
-        for axis in 0..3 {
-            for lane in 0..WIDTH {
-                around.low[axis][lane] -= point[axis] + slack;
-                around.high[axis][lane] -= point[axis] - slack;
-            }
+        let axes = around.low.iter_mut().zip(&mut around.high).zip(point);
+        for ((low, high), place) in axes {
+            low.iter_mut().for_each(|low| *low -= place + slack);
+            high.iter_mut().for_each(|high| *high -= place - slack);
         }
         let ([x0, y0, z0], [x1, y1, z1]) = (around.low, around.high);
         let (least, greatest) = self.slopes;
