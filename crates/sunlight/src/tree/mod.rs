@@ -76,7 +76,8 @@ impl Tree {
         open.begin(&in_front, attributes);
         let point = self.axes * receiver.point;
         let point = [point.x as f32, point.y as f32, point.z as f32];
-        let slack = ROUNDING * point.iter().fold(0.0, |far: f32, value| far.max(value.abs()));
+        // Twice: the point is rounded, and so is its difference from a box.
+        let slack = 2.0 * ROUNDING * point.iter().fold(0.0, |far: f32, value| far.max(value.abs()));
         stack.clear();
         if !self.nodes.is_empty() {
             stack.push(Entry { child: 0, object: MANY, times: hours.always() });
