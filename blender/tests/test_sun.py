@@ -417,4 +417,6 @@ def test_frames_cancelled_stay(tmp_path: Path) -> None:
 
     job = Job(work)
     assert job.wait(60.0) and job.cancelled and job.error is None
-    assert sorted(file.name for file in tmp_path.glob("*.exr")) == ["a.1.exr"]
+    # The second one may be finished by the time that anybody hears of it.
+    names = sorted(file.name for file in tmp_path.glob("*.exr"))
+    assert names in (["a.1.exr"], ["a.1.exr", "a.2.exr"])
