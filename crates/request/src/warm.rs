@@ -19,9 +19,10 @@ use crate::staged::Staged;
 const UNSETTLED: Duration = Duration::from_secs(2);
 
 /// What stays warm; nothing at first. What an order needs otherwise is made anew and replaces it: another device, another scene, a scene of which a
-/// file has changed.
+/// file has changed. By default, for one order alone, no scene stays: its memory is left to the encoders.
 #[derive(Default)]
 pub struct Warm {
+    keeps_scenes: bool,
     devices: Option<WarmDevices>,
     scene: Option<WarmScene>,
 }
@@ -71,6 +72,11 @@ struct Status {
 }
 
 impl Warm {
+    /// For many orders, between which the scene stays.
+    pub fn for_many() -> Warm {
+        Warm { keeps_scenes: true, ..Warm::default() }
+    }
+
     /// A renderer on the devices of a plan.
     ///
     /// # Errors
@@ -81,7 +87,8 @@ impl Warm {
             return Ok(known.clone());
         }
         // What is on the other device goes first.
-        *self = Warm { scene: self.scene.take().map(|scene| WarmScene { staged: None, ..scene }), devices: None };
+        self.devices = None;
+        self.scene.iter_mut().for_each(|scene| scene.staged = None);
         let choice = Choice::of(asked.0)?;
         let (reason, no_cuda, misses_cuda) = (choice.reason.clone(), choice.no_cuda.clone(), choice.misses_cuda);
         let renderer = Arc::new(Renderer::on(choice, asked.1)?);
@@ -102,6 +109,9 @@ impl Warm {
         self.scene = None;
         let begin = SystemTime::now();
         let scene = read()?;
+        if !self.keeps_scenes {
+            return Ok(scene);
+        }
         let files: Vec<Stamp> = scene.files.iter().map(|file| Stamp::of(file)).collect();
         if !plan.order.is_from_stdin() && files.iter().all(|file| file.is_settled(begin)) {
             self.scene = Some(WarmScene { read: reading, files, scene: scene.clone(), staged: None });

@@ -28,7 +28,7 @@ fn work(job: &Job, warm: &mut Warm) -> u8 {
     let code = panic::catch_unwind(AssertUnwindSafe(render)).unwrap_or(UNABLE);
     if code == UNABLE {
         // What is broken, or too large, is not kept.
-        *warm = Warm::default();
+        *warm = Warm::for_many();
     }
     code
 }

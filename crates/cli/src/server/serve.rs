@@ -58,7 +58,7 @@ pub(crate) fn serve(path: &Path, idle: Duration, inherits: bool, work: &Work) ->
         let _ = say(format!("error: the server cannot begin again ({error}) and ends\n"));
     }));
     output::complain(&format!("serving at {}", path.display()));
-    let mut warm = Warm::default();
+    let mut warm = Warm::for_many();
     loop {
         let Some(stream) = socket.next(idle).map_err(wrong)? else {
             output::complain(&match socket.is_there() {
